@@ -1,0 +1,24 @@
+/*
+ * writer.h: records -> archive file. The archive appears under its name only when it is whole.
+ */
+#ifndef ARCHIVE_WRITER_H
+#define ARCHIVE_WRITER_H
+
+#include "../brdfpack.h"
+
+struct archive_writer;
+
+/* Creates a temporary file beside `path`; its own path is in archive_writer_temporary (for clean-up on a signal). */
+bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error);
+const char *archive_writer_temporary(const struct archive_writer *writer);
+
+/* Appends one whole record. Names must come in strictly ascending byte order. */
+bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error);
+
+/* Writes index and header, fsyncs, renames over `path`, fsyncs the folder; frees the writer, also on failure (then the temporary file is removed). */
+bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error);
+
+/* Removes the temporary file and frees the writer; NULL is allowed. */
+void archive_writer_discard(struct archive_writer *writer);
+
+#endif

@@ -1,0 +1,76 @@
+/*
+ * record.h: model <-> bytes: one material's record (format-spec/FORMAT.md, "Record").
+ *
+ *     record_pack   = model_fit -> sections -> decode -> fidelity of every layer -> head
+ *     record_head_parse -> record_decode -> model
+ */
+#ifndef CODEC_RECORD_H
+#define CODEC_RECORD_H
+
+#include "../model/model.h"
+
+enum { RECORD_NAME_BYTES_MAX = 255, RECORD_SECTIONS_MAX = 64, SHA256_BYTES = 32 };
+
+/* The measured file a record was made from. */
+struct record_source {
+	uint64_t bytes;
+	uint8_t sha256[SHA256_BYTES];
+	uint64_t nonfinite_count; /* cells refused as NaN or infinite */
+};
+
+struct record_layer {
+	uint32_t bytes; /* of the record up to and including this layer, head included */
+	struct fidelity fidelity;
+};
+
+struct record_section {
+	uint16_t type, codec, version;
+	uint16_t layer;    /* the first layer that needs it; 0: every load does */
+	uint16_t flags;    /* bit 0: required */
+	uint32_t offset;   /* from the record's start */
+	uint32_t bytes;
+	uint32_t crc32;
+	double error;      /* what `list NAME` shows beside the section, or NaN where it has none */
+};
+
+/* All that is known of a record without reading its sections. */
+struct record_head {
+	char name[RECORD_NAME_BYTES_MAX + 1];
+	enum profile profile;
+	uint32_t codec_version;
+	uint32_t head_bytes, record_bytes;
+	struct lattice_dims dims;
+	double horizon_limit;
+	struct colour_fit colour[3];
+	struct fit_options options;
+	struct record_source source;
+	uint32_t layer_count;
+	struct record_layer layers[LAYERS_MAX];
+	uint32_t section_count;
+	struct record_section sections[RECORD_SECTIONS_MAX];
+	uint32_t left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 and are not stored */
+};
+
+/*
+ * Fits and encodes one material: *record is malloc'ed (the caller frees it). The head, parsed
+ * from the very bytes, is stored in *head when that is not NULL. A record never exceeds
+ * options->budget_bytes; BP_ERROR_LIMIT names the least possible budget otherwise.
+ */
+bp_status record_pack(const struct lattice *lattice, const char *name, const struct record_source *source,
+                      const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
+                      bp_error *error);
+
+/* Bytes from the record's start that record_head_parse needs at least to find head_bytes. */
+enum { RECORD_PROBE_BYTES = 16 };
+
+/* Checks and parses the first `count` bytes of a record (at least its head). Offsets in errors count from the record's start. */
+bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_head *head, bp_error *error);
+
+/* Delivers `count` bytes at `offset` from the record's start. */
+typedef bp_status record_fetch_fn(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error);
+
+/* Fetches and checks the sections of layers 0..layers-1 (0: all) and builds the model; the caller frees it with model_free. */
+bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user,
+                        struct model **out, bp_error *error);
+
+#endif

@@ -1,0 +1,35 @@
+/*
+ * merl_file.h: the MERL file format: three little-endian int32 (90 90 180), then the planes
+ * R, G, B of float64, theta_h slowest and phi_d fastest; stored value * MERL_SCALE[c] is 1/sr.
+ */
+#ifndef MERL_MERL_FILE_H
+#define MERL_MERL_FILE_H
+
+#include "lattice.h"
+
+/* Bytes of a file with these extents: 12 + 24 * cells. MERL: 34,992,012. */
+uint64_t merl_file_bytes(struct lattice_dims dims);
+
+/* Delivers up to `capacity` bytes; *read = 0 at the end. Returns a status. */
+typedef bp_status merl_read_fn(void *user, void *bytes, size_t capacity, size_t *read, bp_error *error);
+/* Is shown every byte that was read, in order (for a checksum). May be NULL. */
+typedef void merl_seen_fn(void *user, const void *bytes, size_t count);
+
+/*
+ * Reads one MERL file from a stream to its end. Refuses (BP_ERROR_BAD_INPUT, with expected and found):
+ * a header other than `90 90 180` (any legal extents when any_dims), a short stream, trailing bytes,
+ * no valid cell at all. On success the caller owns *out.
+ */
+bp_status lattice_read(merl_read_fn *read, void *user, merl_seen_fn *seen, void *seen_user, bool any_dims,
+                       struct lattice *out, bp_error *error);
+/* The same for a file of the file system. */
+bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_user, bool any_dims, struct lattice *out,
+                            bp_error *error);
+
+/*
+ * Writes a decoded table as a MERL file: -1 where below[cell], unit * value / MERL_SCALE elsewhere.
+ * Writes to a temporary file beside `path`, then renames: an older file is replaced whole or not at all.
+ */
+bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error);
+
+#endif

@@ -1,0 +1,6 @@
+#include "brdfpack.h"
+
+int main(void)
+{
+	return 0;
+}
