@@ -1,23 +1,32 @@
 # brdfpack: `make help` lists the targets and the knobs.
 .DEFAULT_GOAL := all
 
-CC      ?= cc
-BUILD   ?= build
-PREFIX  ?= /usr/local
-DESTDIR ?=
-V       ?= 0
-CFLAGS  ?= -O3 -g
+# Knobs: make VARIABLE=value
+CC       ?= cc
+BUILD    ?= build
+PREFIX   ?= /usr/local
+LIBDIR   ?= $(PREFIX)/lib
+DESTDIR  ?=
+V        ?= 0
+CFLAGS   ?= -O3 -g
+SANITIZE ?=
+OBJCOPY  ?= objcopy
+
 # -ffp-contract=off: results do not depend on the machine having fused multiply-add
 REQUIRED := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -Isrc -MMD -MP
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes
-SANITIZE ?=
 ifneq ($(SANITIZE),)
 SANFLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
 endif
 ALL_CFLAGS = $(REQUIRED) $(WARNINGS) $(CFLAGS) $(SANFLAGS)
 Q := $(if $(filter 1,$(V)),,@)
+SAY = @$(if $(filter 1,$(V)),true,echo) "  $(1)"
 
-# The library: everything a renderer links. The tool adds sources/ (libarchive) and the command line.
+VERSION  := $(shell sed -n 's/^\#define BP_VERSION "\(.*\)"/\1/p' src/brdfpack.h)
+SONAME   := libbrdfpack.so.$(firstword $(subst ., ,$(VERSION)))
+SHARED   := libbrdfpack.so.$(VERSION)
+
+# The library: everything a renderer links. The tool adds sources (libarchive), images and the command line.
 TOOL_ONLY    := src/merl/source.c src/merl/sha256.c src/merl/demo.c
 LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/merl/*.c src/model/*.c src/codec/*.c src/archive/*.c))
 TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c)
@@ -30,35 +39,102 @@ LIBRARY_LIBS := -lz -lm
 TOOL_LIBS    := -larchive -lnettle -lpng
 TEST_LIBS    := -lcmocka -lgsl -lgslcblas
 
-all: $(BUILD)/libbrdfpack.a $(BUILD)/brdfpack
+all: $(BUILD)/libbrdfpack.a $(BUILD)/$(SHARED) $(BUILD)/brdfpack
 
-# Files named kernels_avx2.c are compiled for AVX2 and called only where the processor has it.
-$(BUILD)/%_avx2.o: ALL_CFLAGS += -mavx2
-$(BUILD)/%.o: %.c
+help:
+	@echo "Targets:"
+	@echo "  all          the tool and the static and shared library, in $(BUILD)/ (the default)"
+	@echo "  check        unit tests and command-line tests: quick and complete"
+	@echo "  tests        builds the unit tests"
+	@echo "  check-cli    command-line tests only (tests/cli)"
+	@echo "  check-symbols  every public symbol begins with bp_"
+	@echo "  bench        build, decode, list and verify times beside cat (src/bench)"
+	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
+	@echo "  uninstall    removes what install wrote"
+	@echo "  clean        removes $(BUILD)/"
+	@echo "Knobs:"
+	@echo "  CC=$(CC)  CFLAGS='$(CFLAGS)'  LDFLAGS='$(LDFLAGS)'"
+	@echo "  BUILD=$(BUILD)  where objects and programs go"
+	@echo "  SANITIZE=address,undefined  builds with sanitizers (give it a BUILD of its own)"
+	@echo "  PREFIX=$(PREFIX)  LIBDIR=$(LIBDIR)  DESTDIR=$(DESTDIR)"
+	@echo "  V=1  shows the commands"
+	@echo "scripts/setup.sh installs the Debian packages, scripts/test.sh runs every test job."
+
+# Rebuild when the compiler or its flags change: the file changes only when they do.
+FLAGS := $(CC) $(ALL_CFLAGS) $(LDFLAGS)
+$(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@[ $(V) = 1 ] || echo "  CC    $<"
+	@echo '$(FLAGS)' | cmp -s - $@ || echo '$(FLAGS)' > $@
+
+# Files named *_avx2.c are compiled for AVX2 and called only where the processor has it.
+$(BUILD)/%_avx2.o: ALL_CFLAGS += -mavx2
+$(BUILD)/%.o: %.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call SAY,CC    $<)
 	$(Q)$(CC) $(ALL_CFLAGS) -fPIC -c -o $@ $<
 
-$(BUILD)/libbrdfpack.a: $(LIBRARY_O)
-	@[ $(V) = 1 ] || echo "  AR    $@"
+# With internal symbols, for the tool and the tests.
+$(BUILD)/internal.a: $(LIBRARY_O)
+	$(call SAY,AR    $@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-$(BUILD)/brdfpack: $(TOOL_O) $(BUILD)/libbrdfpack.a
-	@[ $(V) = 1 ] || echo "  LD    $@"
-	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $(TOOL_O) $(BUILD)/libbrdfpack.a $(TOOL_LIBS) $(LIBRARY_LIBS)
+# For everyone else: one object whose internal symbols are local, so that they clash with nobody's.
+$(BUILD)/libbrdfpack.a: $(LIBRARY_O)
+	$(call SAY,AR    $@)
+	$(Q)$(LD) -r -o $(BUILD)/libbrdfpack.o $^
+	$(Q)$(OBJCOPY) --localize-hidden $(BUILD)/libbrdfpack.o
+	$(Q)rm -f $@ && $(AR) rcs $@ $(BUILD)/libbrdfpack.o
+
+$(BUILD)/$(SHARED): $(LIBRARY_O)
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) -o $@ $^ $(LIBRARY_LIBS)
+
+$(BUILD)/brdfpack: $(TOOL_O) $(BUILD)/internal.a
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $(TOOL_O) $(BUILD)/internal.a $(TOOL_LIBS) $(LIBRARY_LIBS)
 
 # One test program per module; each links the library and the tool's objects without main.
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libbrdfpack.a $(filter-out $(BUILD)/src/tool/main.o,$(TOOL_O))
-	@[ $(V) = 1 ] || echo "  LD    $@"
-	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(BUILD)/libbrdfpack.a $(TEST_LIBS) $(TOOL_LIBS) $(LIBRARY_LIBS)
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/internal.a $(filter-out $(BUILD)/src/tool/main.o,$(TOOL_O))
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(BUILD)/internal.a $(TEST_LIBS) $(TOOL_LIBS) $(LIBRARY_LIBS)
 
 .PRECIOUS: $(BUILD)/tests/%.o
 tests: $(TESTS)
-check: all tests
+
+check: check-unit check-symbols check-cli
+check-unit: tests
 	$(Q)for t in $(TESTS); do echo "== $$t"; $$t || exit 1; done
+check-cli: all
+	$(Q)[ ! -x tests/cli/run ] || BRDFPACK=$(abspath $(BUILD)/brdfpack) tests/cli/run
+check-symbols: all
+	$(Q)nm -g --defined-only $(BUILD)/libbrdfpack.a | awk 'NF == 3 && $$3 !~ /^bp_/ {print "libbrdfpack.a exports " $$3; bad = 1} END {exit bad}'
+	$(Q)nm -D --defined-only $(BUILD)/$(SHARED) | awk '$$3 !~ /^bp_/ {print "$(SHARED) exports " $$3; bad = 1} END {exit bad}'
+
+bench: all
+	$(Q)BRDFPACK=$(abspath $(BUILD)/brdfpack) src/bench/bench_build.sh
+
+$(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
+	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
+
+install: all $(BUILD)/brdfpack.pc
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 755 $(BUILD)/brdfpack $(DESTDIR)$(PREFIX)/bin/
+	install -m 644 src/brdfpack.h $(DESTDIR)$(PREFIX)/include/
+	install -m 644 $(BUILD)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/
+	install -m 755 $(BUILD)/$(SHARED) $(DESTDIR)$(LIBDIR)/
+	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
+	install -m 644 $(BUILD)/brdfpack.pc $(DESTDIR)$(LIBDIR)/pkgconfig/
+	install -m 644 man/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man1/
+
+uninstall:
+	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a
+	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
+	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1
 
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: all tests check clean
+FORCE:
+.PHONY: all help tests check check-unit check-cli check-symbols bench install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

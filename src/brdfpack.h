@@ -23,6 +23,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default) /* the library hides every symbol that is not declared here */
+#endif
 
 #define BP_VERSION "0.1.0"
 
@@ -53,6 +56,9 @@ typedef struct bp_error {
 /* A short text for a status: static, never NULL. */
 const char *bp_status_text(bp_status status);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

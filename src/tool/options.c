@@ -1,0 +1,123 @@
+#include "options.h"
+
+#include "report.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTION_HELP = 255, NAMES_MAX = 32 };
+
+int options_next(const struct command *command, int argc, char **argv, const char *letters, const struct option *names)
+{
+	char all_letters[64];
+	struct option all_names[NAMES_MAX + 2] = {{"help", no_argument, NULL, OPTION_HELP}};
+
+	snprintf(all_letters, sizeof all_letters, ":h%s", letters); /* ':': a missing argument is told apart */
+	for (int i = 0; i < NAMES_MAX && names[i].name; i++)
+		all_names[i + 1] = names[i];
+	opterr = 0;
+	const char *word = optind < argc ? argv[optind] : ""; /* for messages; permuting moves only operands before it */
+	int index = -1;
+	int option = getopt_long(argc, argv, all_letters, all_names, &index);
+	if (optind > 0 && optind <= argc && option != -1)
+		word = argv[optind - 1];
+	switch (option) {
+	case -1:
+		return OPTIONS_END;
+	case OPTION_HELP:
+	case 'h':
+		fputs(command->usage, stdout);
+		return OPTIONS_HELPED;
+	case ':':
+		report_usage(command, "option '%s' needs a value", word);
+		return OPTIONS_WRONG;
+	case '?':
+		if (!strncmp(word, "--", 2) && strchr(word, '=') && optopt)
+			report_usage(command, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
+		else if (optopt && optopt < 128 && isprint(optopt) && strncmp(word, "--", 2) != 0)
+			report_usage(command, "unknown option '-%c'", optopt);
+		else
+			report_usage(command, "unknown or ambiguous option '%s'", word);
+		return OPTIONS_WRONG;
+	default:
+		return option;
+	}
+}
+
+int options_exit_code(int option)
+{
+	return option == OPTIONS_HELPED ? EXIT_OK : EXIT_USAGE;
+}
+
+static bool range_refuse(const struct command *command, const char *option, const char *text, int64_t least, int64_t most)
+{
+	report_usage(command, "%s: '%s' is not a whole number from %" PRId64 " to %" PRId64, option, text, least, most);
+	return false;
+}
+
+/* The digits at the start of text; *rest is what follows. False without a digit, or on overflow. */
+static bool digits_parse(const char *text, int64_t *out, const char **rest)
+{
+	char *end;
+	if (!isdigit((unsigned char)text[0]))
+		return false; /* strtoll alone would skip spaces and take a sign */
+	errno = 0;
+	long long value = strtoll(text, &end, 10);
+	*out = value;
+	*rest = end;
+	return errno == 0;
+}
+
+bool option_integer(const struct command *command, const char *option, const char *text, int64_t least, int64_t most,
+                    int64_t *out)
+{
+	int64_t value;
+	const char *rest;
+	if (!digits_parse(text, &value, &rest) || *rest || value < least || value > most)
+		return range_refuse(command, option, text, least, most);
+	*out = value;
+	return true;
+}
+
+bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most,
+                  int64_t *out)
+{
+	static const struct {
+		const char *suffix;
+		int64_t factor;
+	} units[] = {{"", 1}, {"B", 1}, {"k", 1000}, {"kB", 1000}, {"K", 1000}, {"KB", 1000}, {"Ki", 1024}, {"KiB", 1024},
+	             {"M", 1000000}, {"MB", 1000000}, {"Mi", 1048576}, {"MiB", 1048576}};
+	int64_t value;
+	const char *rest;
+	if (!digits_parse(text, &value, &rest))
+		return range_refuse(command, option, text, least, most);
+	for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+		int64_t bytes;
+		if (strcmp(rest, units[i].suffix) != 0)
+			continue;
+		if (__builtin_mul_overflow(value, units[i].factor, &bytes) || bytes < least || bytes > most)
+			break;
+		*out = bytes;
+		return true;
+	}
+	return range_refuse(command, option, text, least, most);
+}
+
+bool option_number(const struct command *command, const char *option, const char *text, double least, double most,
+                   double *out)
+{
+	char *end = NULL;
+	bool starts_well = isdigit((unsigned char)text[0]) || text[0] == '.';
+	double value = starts_well ? strtod(text, &end) : NAN;
+	if (!starts_well || *end || !(value >= least && value <= most)) {
+		report_usage(command, "%s: '%s' is not a number from %g to %g", option, text, least, most);
+		return false;
+	}
+	*out = value;
+	return true;
+}
