@@ -7,7 +7,20 @@
  *     theta_h = (i/H)^2 pi/2      theta_d = (j/D) pi/2      phi_d = (k/P) pi
  *
  * (Rusinkiewicz 1998; the square root spacing of theta_h is the MERL database's).
- * phi_d is periodic with period pi: that is reciprocity.
+ *
+ * Three conventions, on which readers of MERL files disagree:
+ *
+ * - A stored value belongs to its cell's lower corner (the angles above). Interpolation runs
+ *   between corners, and is clamped at the far end of theta_h and theta_d.
+ * - phi_d is periodic with period pi: a negative phi_d is folded by adding pi. That is
+ *   reciprocity (exchange of the two directions) and exact; phi_d is not mirrored.
+ * - A cell in which any channel is below 0 was not measured: all its channels are invalid.
+ *
+ * With td, th, pd for theta_d, theta_h, phi_d, the cosines of the two directions are
+ *
+ *     cos theta_i, cos theta_o = cos td cos th -/+ sin td cos pd sin th
+ *
+ * and the smaller of them is cos td cos th - |sin td cos pd sin th|.
  */
 #ifndef MERL_LATTICE_H
 #define MERL_LATTICE_H
@@ -37,9 +50,12 @@ struct lattice {
 	uint8_t *valid;      /* 1: measured, in all three channels; 0: takes part in nothing */
 	size_t valid_count;
 	size_t nonfinite_count; /* cells that were refused because a channel was NaN or infinite */
+	void *block;         /* the one allocation behind the planes, each aligned to 64 bytes */
 };
 
 bool lattice_dims_legal(struct lattice_dims dims);
+/* BP_OK, or BP_ERROR_LIMIT with the extents and what is legal. */
+bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error);
 size_t lattice_cells(struct lattice_dims dims);
 static inline size_t lattice_index(struct lattice_dims dims, uint32_t i, uint32_t j, uint32_t k)
 {
@@ -57,14 +73,31 @@ void lattice_free(struct lattice *lattice); /* NULL and a zeroed struct are allo
 void lattice_validate(struct lattice *lattice);
 
 /*
- * The horizon.
+ * The same in steps, for a reader that works on data while it is in the cache. state = lattice.valid,
+ * zeroed. lattice_scan: notes in state[count] what is wrong with the values, scales them, and
+ * stores 0 for those that cannot be used; once per plane. lattice_scan_finish: state becomes valid.
+ */
+void lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state);
+void lattice_scan_finish(struct lattice *lattice);
+
+/* Cosine and sine of t quarter turns, t in [0, 1]: exact at 0 and 1, within 2e-16, the same on every machine. */
+void quarter_cos_sin(double t, double *cosine, double *sine);
+
+/*
+ * The horizon: which cells extraction writes as -1.
  *
- * lattice_horizon_limit: the lowest cosine (the smaller of cos theta_i and cos theta_o, taken at
- * the cell's centre) at which anything was measured, clamped to [-sin 5 degrees, 0]. In the MERL
- * database the cells that hold a value are exactly those above -sin 3.5 degrees.
+ * A cell is *below the horizon* when all of it is (the smaller cosine nowhere exceeds 0; it falls
+ * with theta_h and theta_d and rises towards phi_d = pi/2), and the smaller cosine at the cell's
+ * centre is below a limit. In the MERL database the limit is -0.061 (3.5 degrees): the cells that
+ * hold a value are those above it, and this rule gives back the database's pattern to the cell,
+ * provided the centre's angles are taken with pi = 3.1416. Every other cell gets a value, measured or not.
  *
- * lattice_below_horizon: fills below[cells]: 1 where the whole cell lies below the horizon and
- * its centre lies below `limit`. Extraction writes -1 there and the model's value everywhere else.
+ * lattice_horizon_limit: the limit of one material: the lowest smaller cosine at the centre of a
+ * valid cell that lies wholly below, in [-sin 5 degrees, 0] (never below -0.0872). It is one float, rounded down, so that a record may
+ * store it as float or double and no cell changes sides.
+ *
+ * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere. Fails (as
+ * lattice_corner_cosine does) only for dims that are not legal.
  */
 double lattice_horizon_limit(const struct lattice *lattice);
 bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error);
@@ -83,6 +116,7 @@ struct expansion {
 	struct lattice_dims dims;
 	double unit;
 	float *rgb[3];
+	void *block;
 };
 bp_status expansion_alloc(struct lattice_dims dims, struct expansion *out, bp_error *error);
 void expansion_free(struct expansion *expansion);

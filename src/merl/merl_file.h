@@ -12,23 +12,27 @@ uint64_t merl_file_bytes(struct lattice_dims dims);
 
 /* Delivers up to `capacity` bytes; *read = 0 at the end. Returns a status. */
 typedef bp_status merl_read_fn(void *user, void *bytes, size_t capacity, size_t *read, bp_error *error);
-/* Is shown every byte that was read, in order (for a checksum). May be NULL. */
+/* Is shown every byte of the file, in order (for a checksum). May be NULL. */
 typedef void merl_seen_fn(void *user, const void *bytes, size_t count);
 
 /*
  * Reads one MERL file from a stream to its end. Refuses (BP_ERROR_BAD_INPUT, with expected and found):
  * a header other than `90 90 180` (any legal extents when any_dims), a short stream, trailing bytes,
- * no valid cell at all. On success the caller owns *out.
+ * no valid cell at all. The error's offset is where the file ends or should. On success the caller owns *out.
  */
 bp_status lattice_read(merl_read_fn *read, void *user, merl_seen_fn *seen, void *seen_user, bool any_dims,
                        struct lattice *out, bp_error *error);
-/* The same for a file of the file system. */
+/*
+ * The same for a regular file of the file system; a FIFO, a device or a folder is refused without
+ * waiting. Messages do not repeat the path: the caller puts it in front.
+ */
 bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_user, bool any_dims, struct lattice *out,
                             bp_error *error);
 
 /*
- * Writes a decoded table as a MERL file: -1 where below[cell], unit * value / MERL_SCALE elsewhere.
- * Writes to a temporary file beside `path`, then renames: an older file is replaced whole or not at all.
+ * Writes a decoded table as a MERL file: -1 where below[cell], unit * value / MERL_SCALE elsewhere
+ * (DBL_MAX where that would overflow). An older file is replaced whole or not at all (output_file.h);
+ * errors name the path.
  */
 bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error);
 

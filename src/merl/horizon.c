@@ -1,0 +1,128 @@
+/*
+ * horizon.c: the lattice's cosines, and from them what lies below the horizon.
+ */
+#include <math.h>
+
+#include "../error.h"
+#include "lattice.h"
+
+void quarter_cos_sin(double t, double *cosine, double *sine)
+{
+	/* Taylor series on [0, pi/4]: the first term left out is below 1e-18. */
+	const double x = (t <= 0.5 ? t : 1 - t) * 1.57079632679489661923;
+	const double y = x * x;
+	const double s = x + x * y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 + y * (-1.0 / 39916800 +
+	                 y * (1.0 / 6227020800 + y * (-1.0 / 1307674368000 + y * (1.0 / 355687428096000))))))));
+	const double c = 1 + y * (-0.5 + y * (1.0 / 24 + y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 +
+	                 y * (1.0 / 479001600 + y * (-1.0 / 87178291200 + y * (1.0 / 20922789888000))))))));
+	*cosine = t <= 0.5 ? c : s;
+	*sine = t <= 0.5 ? s : c;
+}
+
+/* Cosine and sine along theta_h and theta_d, |cos| along phi_d: 40 KB, which the stack bears. */
+struct cosines {
+	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX];
+	double cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX];
+	double cos_p[LATTICE_EXTENT_MAX];
+};
+
+/*
+ * The database's pattern was computed with pi = 3.1416: centres with that pi give it back to the
+ * cell, with an exact pi 6 of its 305,826 invalid cells would be taken for holes above the limit.
+ */
+static const double CENTRE_SCALE = 3.1416 / 3.14159265358979323846;
+
+/* |cos(scale pi x / extent)|, 0 <= x <= extent; the same for x and extent - x */
+static double phi_cosine(double x, double extent, double scale)
+{
+	const double t = scale * (2 * x <= extent ? 2 * x / extent : 2 * (extent - x) / extent);
+	double cosine, sine;
+	quarter_cos_sin(t <= 1 ? t : 1, &cosine, &sine);
+	return cosine;
+}
+
+/* At cell + offset along each axis, the angles times `scale`: 0 and 1 for the lower corner, 0.5 and CENTRE_SCALE for the centre. */
+static void cosines_fill(struct lattice_dims dims, double offset, double scale, struct cosines *out)
+{
+	for (uint32_t i = 0; i < dims.theta_h; i++) {
+		const double root = (i + offset) / dims.theta_h;
+		quarter_cos_sin(scale * root * root, &out->cos_h[i], &out->sin_h[i]);
+	}
+	for (uint32_t j = 0; j < dims.theta_d; j++)
+		quarter_cos_sin(scale * (j + offset) / dims.theta_d, &out->cos_d[j], &out->sin_d[j]);
+	for (uint32_t k = 0; k < dims.phi_d; k++)
+		out->cos_p[k] = phi_cosine(k + offset, dims.phi_d, scale);
+}
+
+/* Cosines at the lower corner, but |cos phi_d| at its least in the cell: together they give the largest smaller cosine in it. */
+static void highest_fill(struct lattice_dims dims, struct cosines *out)
+{
+	cosines_fill(dims, 0, 1, out);
+	for (uint32_t k = 0; k < dims.phi_d; k++) {
+		const bool crosses = 2 * k <= dims.phi_d && 2 * (k + 1) >= dims.phi_d; /* phi_d = pi/2 */
+		out->cos_p[k] = crosses ? 0 : fmin(out->cos_p[k], phi_cosine(k + 1, dims.phi_d, 1));
+	}
+}
+
+double lattice_horizon_limit(const struct lattice *lattice)
+{
+	const struct lattice_dims dims = lattice->dims;
+	const double floor_limit = -0.08715574274765817; /* -sin 5 degrees */
+	struct cosines highest, centre;
+	highest_fill(dims, &highest);
+	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
+	double lowest = 0;
+	const uint8_t *valid = lattice->valid;
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++, valid += dims.phi_d) {
+			const double a = centre.cos_d[j] * centre.cos_h[i], q = centre.sin_d[j] * centre.sin_h[i];
+			const double high_a = highest.cos_d[j] * highest.cos_h[i], high_q = highest.sin_d[j] * highest.sin_h[i];
+			if (a - q >= lowest)
+				continue;
+			for (uint32_t k = 0; k < dims.phi_d; k++) {
+				const double cosine = a - q * centre.cos_p[k];
+				if (valid[k] && cosine < lowest && high_a - high_q * highest.cos_p[k] <= 0)
+					lowest = cosine;
+			}
+		}
+	if (lowest >= 0)
+		return 0;
+	/* Down by up to two float steps (7e-9): no rounding of a later computation takes a cell across. */
+	return (double)nextafterf((float)(lowest > floor_limit ? lowest : floor_limit), -1);
+}
+
+bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
+{
+	struct cosines highest, centre;
+	bp_status status = lattice_dims_check(dims, error);
+	if (status != BP_OK)
+		return status;
+	highest_fill(dims, &highest);
+	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++, below += dims.phi_d) {
+			const double high_a = highest.cos_d[j] * highest.cos_h[i], high_q = highest.sin_d[j] * highest.sin_h[i];
+			const double a = centre.cos_d[j] * centre.cos_h[i], q = centre.sin_d[j] * centre.sin_h[i];
+			for (uint32_t k = 0; k < dims.phi_d; k++)
+				below[k] = (high_a - high_q * highest.cos_p[k] <= 0) & (a - q * centre.cos_p[k] < limit);
+		}
+	return BP_OK;
+}
+
+bp_status lattice_corner_cosine(struct lattice_dims dims, float *cosine, bp_error *error)
+{
+	struct cosines corner;
+	bp_status status = lattice_dims_check(dims, error);
+	if (status != BP_OK)
+		return status;
+	cosines_fill(dims, 0, 1, &corner);
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++, cosine += dims.phi_d) {
+			const double a = corner.cos_d[j] * corner.cos_h[i], q = corner.sin_d[j] * corner.sin_h[i];
+			for (uint32_t k = 0; k < dims.phi_d; k++) {
+				const double smaller = a - q * corner.cos_p[k];
+				cosine[k] = (float)(smaller > 0 ? smaller : 0);
+			}
+		}
+	return BP_OK;
+}

@@ -1,0 +1,150 @@
+#include "lattice.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../error.h"
+
+const struct lattice_dims LATTICE_MERL = {90, 90, 180};
+const double MERL_SCALE[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};
+
+enum { ALIGNMENT = 64 };
+
+bool lattice_dims_legal(struct lattice_dims dims)
+{
+	const uint32_t extent[3] = {dims.theta_h, dims.theta_d, dims.phi_d};
+	for (int a = 0; a < 3; a++)
+		if (extent[a] < LATTICE_EXTENT_MIN || extent[a] > LATTICE_EXTENT_MAX)
+			return false;
+	return lattice_cells(dims) <= LATTICE_CELLS_MAX;
+}
+
+size_t lattice_cells(struct lattice_dims dims)
+{
+	return (size_t)dims.theta_h * dims.theta_d * dims.phi_d;
+}
+
+/* Three planes of `plane_bytes` and `extra` bytes, zeroed, in one block; planes[3] is where the extra bytes start. */
+static bp_status planes_alloc(size_t plane_bytes, size_t extra, void **block, unsigned char *planes[4], bp_error *error)
+{
+	const size_t stride = (plane_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+	const size_t bytes = 3 * stride + extra + ALIGNMENT;
+	/* calloc, not aligned_alloc and memset: fresh pages of the system are zero already */
+	*block = calloc(bytes, 1);
+	if (!*block)
+		return error_memory(error, bytes);
+	const size_t ahead = (ALIGNMENT - (uintptr_t)*block % ALIGNMENT) % ALIGNMENT;
+	for (size_t c = 0; c < 4; c++)
+		planes[c] = (unsigned char *)*block + ahead + c * stride;
+	return BP_OK;
+}
+
+bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error)
+{
+	if (lattice_dims_legal(dims))
+		return BP_OK;
+	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "lattice of %u x %u x %u: each extent must be %d to %d, %d cells at most",
+	                 dims.theta_h, dims.theta_d, dims.phi_d, LATTICE_EXTENT_MIN, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
+}
+
+bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error)
+{
+	unsigned char *planes[4];
+	bp_status status = lattice_dims_check(dims, error);
+	if (status != BP_OK)
+		return status;
+	struct lattice lattice = {.dims = dims};
+	const size_t cells = lattice_cells(dims);
+	status = planes_alloc(cells * sizeof(double), cells, &lattice.block, planes, error);
+	if (status != BP_OK)
+		return status;
+	for (int c = 0; c < 3; c++)
+		lattice.rgb[c] = (double *)(void *)planes[c];
+	lattice.valid = planes[3];
+	*out = lattice;
+	return BP_OK;
+}
+
+void lattice_free(struct lattice *lattice)
+{
+	if (!lattice)
+		return;
+	free(lattice->block);
+	memset(lattice, 0, sizeof *lattice);
+}
+
+bp_status expansion_alloc(struct lattice_dims dims, struct expansion *out, bp_error *error)
+{
+	unsigned char *planes[4];
+	bp_status status = lattice_dims_check(dims, error);
+	if (status != BP_OK)
+		return status;
+	struct expansion expansion = {.dims = dims, .unit = 1};
+	status = planes_alloc(lattice_cells(dims) * sizeof(float), 0, &expansion.block, planes, error);
+	if (status != BP_OK)
+		return status;
+	for (int c = 0; c < 3; c++)
+		expansion.rgb[c] = (float *)(void *)planes[c];
+	*out = expansion;
+	return BP_OK;
+}
+
+void expansion_free(struct expansion *expansion)
+{
+	if (!expansion)
+		return;
+	free(expansion->block);
+	memset(expansion, 0, sizeof *expansion);
+}
+
+enum { CELL_NEGATIVE = 1, CELL_NONFINITE = 2 };
+
+void lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state)
+{
+	/* In blocks with flags as wide as the values, so that both loops vectorise. */
+	enum { BLOCK = 256 };
+	double flags[BLOCK];
+	for (size_t start = 0; start < count; start += BLOCK) {
+		const size_t block = count - start < BLOCK ? count - start : BLOCK;
+		double *v = values + start;
+		for (size_t n = 0; n < block; n++) {
+			const bool finite = fabs(v[n]) <= DBL_MAX; /* false for NaN, as is the next */
+			const bool measured = v[n] >= 0;
+			flags[n] = (measured ? 0.0 : CELL_NEGATIVE) + (finite ? 0.0 : CELL_NONFINITE);
+			v[n] = ((measured & finite) ? v[n] : 0.0) * scale + 0.0; /* + 0.0 turns -0.0 into 0.0 */
+		}
+		for (size_t n = 0; n < block; n++)
+			state[start + n] |= (uint8_t)(int)flags[n];
+	}
+}
+
+void lattice_scan_finish(struct lattice *lattice)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	uint8_t *restrict state = lattice->valid;
+	size_t valid = 0, nonfinite = 0;
+	for (size_t start = 0; start < cells; start += 128) { /* short sums, which stay in bytes */
+		const size_t end = start + 128 < cells ? start + 128 : cells;
+		uint8_t ok = 0, strange = 0;
+		for (size_t n = start; n < end; n++) {
+			strange = (uint8_t)(strange + (state[n] >> 1));
+			state[n] = state[n] == 0;
+			ok = (uint8_t)(ok + state[n]);
+		}
+		valid += ok;
+		nonfinite += strange;
+	}
+	lattice->valid_count = valid;
+	lattice->nonfinite_count = nonfinite;
+}
+
+void lattice_validate(struct lattice *lattice)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	memset(lattice->valid, 0, cells);
+	for (int c = 0; c < 3; c++)
+		lattice_scan(lattice->rgb[c], cells, 1, lattice->valid);
+	lattice_scan_finish(lattice);
+}

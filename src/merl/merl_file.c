@@ -1,0 +1,219 @@
+#include "merl_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <float.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "../error.h"
+#include "../output_file.h"
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "MERL files are little-endian; a big-endian machine needs a swap here");
+
+enum { HEADER_BYTES = 12, CHUNK_VALUES = 1 << 15 }; /* 256 KB: read, hashed and checked while in the cache */
+
+uint64_t merl_file_bytes(struct lattice_dims dims)
+{
+	return HEADER_BYTES + 3 * sizeof(double) * (uint64_t)lattice_cells(dims);
+}
+
+/* Where the bytes come from and who looks on. */
+struct input {
+	merl_read_fn *read;
+	void *user;
+	merl_seen_fn *seen;
+	void *seen_user;
+	uint64_t done;
+};
+
+/* Reads `count` bytes, or fewer at the end of the stream: *got says how many. */
+static bp_status input_fill(struct input *in, void *bytes, size_t count, size_t *got, bp_error *error)
+{
+	char *next = bytes;
+	size_t filled = 0;
+	while (filled < count) {
+		size_t once = 0;
+		bp_status status = in->read(in->user, next + filled, count - filled, &once, error);
+		if (status != BP_OK)
+			return status;
+		if (!once)
+			break;
+		filled += once;
+	}
+	if (in->seen && filled)
+		in->seen(in->seen_user, bytes, filled);
+	in->done += filled;
+	*got = filled;
+	return BP_OK;
+}
+
+static bp_status truncated(uint64_t expected, uint64_t found, bp_error *error)
+{
+	return error_set(error, BP_ERROR_BAD_INPUT, found, "truncated: expected %" PRIu64 " bytes, found %" PRIu64, expected, found);
+}
+
+static bp_status header_read(struct input *in, bool any_dims, struct lattice_dims *dims, bp_error *error)
+{
+	int32_t extent[3];
+	size_t got;
+	bp_status status = input_fill(in, extent, sizeof extent, &got, error);
+	if (status != BP_OK)
+		return status;
+	if (!got)
+		return error_set(error, BP_ERROR_BAD_INPUT, 0, "empty: expected a MERL file of %" PRIu64 " bytes", merl_file_bytes(LATTICE_MERL));
+	if (got < sizeof extent)
+		return truncated(merl_file_bytes(LATTICE_MERL), got, error);
+	*dims = (struct lattice_dims){(uint32_t)extent[0], (uint32_t)extent[1], (uint32_t)extent[2]}; /* a negative one is too large */
+	const bool merl = extent[0] == 90 && extent[1] == 90 && extent[2] == 180;
+	if (merl || (any_dims && lattice_dims_legal(*dims)))
+		return BP_OK;
+	return error_set(error, BP_ERROR_BAD_INPUT, 0, "not a MERL file: expected the header 90 90 180%s, found %" PRId32 " %" PRId32 " %" PRId32,
+	                 any_dims ? " (or other legal extents)" : "", extent[0], extent[1], extent[2]);
+}
+
+/* After the header: the planes, to the end of the stream. */
+static bp_status planes_read(struct input *in, struct lattice *lattice, bp_error *error)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	const uint64_t expected = merl_file_bytes(lattice->dims);
+	bp_status status;
+	size_t got;
+	for (int c = 0; c < 3; c++)
+		for (size_t start = 0; start < cells; start += CHUNK_VALUES) {
+			const size_t count = cells - start < CHUNK_VALUES ? cells - start : CHUNK_VALUES;
+			double *values = lattice->rgb[c] + start;
+			status = input_fill(in, values, count * sizeof *values, &got, error);
+			if (status != BP_OK)
+				return status;
+			if (got < count * sizeof *values)
+				return truncated(expected, in->done, error);
+			lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start);
+		}
+	char extra;
+	status = in->read(in->user, &extra, 1, &got, error);
+	if (status != BP_OK)
+		return status;
+	if (got)
+		return error_set(error, BP_ERROR_BAD_INPUT, expected, "trailing bytes: expected the end after %" PRIu64 " bytes, found more", expected);
+	lattice_scan_finish(lattice);
+	if (!lattice->valid_count)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: each of the %zu is negative, NaN or infinite in some channel", cells);
+	return BP_OK;
+}
+
+/* `available`: the bytes that are there, where that is known; a size that cannot be right is told before 35 MB are read in vain. */
+static bp_status input_read(struct input *in, bool any_dims, uint64_t available, struct lattice *out, bp_error *error)
+{
+	struct lattice lattice = {0};
+	struct lattice_dims dims;
+	bp_status status = header_read(in, any_dims, &dims, error);
+	if (status != BP_OK)
+		return status;
+	const uint64_t expected = merl_file_bytes(dims);
+	if (available < expected)
+		return truncated(expected, available, error);
+	if (available > expected && available != UINT64_MAX)
+		return error_set(error, BP_ERROR_BAD_INPUT, expected, "trailing bytes: expected %" PRIu64 " bytes, found %" PRIu64, expected,
+		                 available);
+	status = lattice_alloc(dims, &lattice, error);
+	if (status != BP_OK)
+		return status;
+	status = planes_read(in, &lattice, error);
+	if (status == BP_OK)
+		*out = lattice;
+	else
+		lattice_free(&lattice);
+	return status;
+}
+
+bp_status lattice_read(merl_read_fn *read, void *user, merl_seen_fn *seen, void *seen_user, bool any_dims,
+                       struct lattice *out, bp_error *error)
+{
+	struct input in = {.read = read, .user = user, .seen = seen, .seen_user = seen_user};
+	return input_read(&in, any_dims, UINT64_MAX, out, error);
+}
+
+/* merl_read_fn over a file descriptor */
+static bp_status descriptor_read(void *user, void *bytes, size_t capacity, size_t *got, bp_error *error)
+{
+	const int *fd = user;
+	for (;;) {
+		const ssize_t count = read(*fd, bytes, capacity);
+		if (count >= 0) {
+			*got = (size_t)count;
+			return BP_OK;
+		}
+		if (errno != EINTR)
+			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read: %s", strerror(errno));
+	}
+}
+
+bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_user, bool any_dims, struct lattice *out,
+                            bp_error *error)
+{
+	bp_status status;
+	struct stat about;
+	/* O_NONBLOCK: opening a FIFO or a device must not wait for its other side */
+	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	if (fd < 0 || fstat(fd, &about) != 0) {
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
+		goto out;
+	}
+	if (!S_ISREG(about.st_mode)) {
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
+		goto out;
+	}
+	struct input in = {.read = descriptor_read, .user = &fd, .seen = seen, .seen_user = seen_user};
+	status = input_read(&in, any_dims, (uint64_t)about.st_size, out, error);
+out:
+	if (fd >= 0)
+		close(fd);
+	return status;
+}
+
+/* values[count] in the file's units: -1 below the horizon */
+static void chunk_fill(const struct expansion *table, int channel, const uint8_t *below, size_t start, size_t count, double *values)
+{
+	const float *source = table->rgb[channel] + start;
+	const double unit = table->unit, scale = MERL_SCALE[channel];
+	for (size_t n = 0; n < count; n++) {
+		const double value = unit * (double)source[n] / scale;
+		values[n] = value <= DBL_MAX ? value : DBL_MAX; /* a table near the end of the range */
+	}
+	for (size_t n = 0; n < count; n++)
+		if (below[start + n])
+			values[n] = -1;
+}
+
+bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error)
+{
+	const struct lattice_dims dims = table->dims;
+	const size_t cells = lattice_cells(dims);
+	const int32_t header[3] = {(int32_t)dims.theta_h, (int32_t)dims.theta_d, (int32_t)dims.phi_d};
+	struct output_file file;
+	bp_status status = output_file_open(path, &file, error);
+	if (status != BP_OK)
+		return status;
+	double *values = malloc(CHUNK_VALUES * sizeof *values);
+	if (!values) {
+		status = error_memory(error, CHUNK_VALUES * sizeof *values);
+		goto out;
+	}
+	status = output_file_write(&file, header, sizeof header, error);
+	for (int c = 0; c < 3; c++)
+		for (size_t start = 0; start < cells && status == BP_OK; start += CHUNK_VALUES) {
+			const size_t count = cells - start < CHUNK_VALUES ? cells - start : CHUNK_VALUES;
+			chunk_fill(table, c, below, start, count, values);
+			status = output_file_write(&file, values, count * sizeof *values, error);
+		}
+	if (status == BP_OK)
+		status = output_file_commit(&file, error);
+out:
+	free(values);
+	output_file_discard(&file);
+	return status;
+}
