@@ -56,6 +56,119 @@ typedef struct bp_error {
 /* A short text for a status: static, never NULL. */
 const char *bp_status_text(bp_status status);
 
+/* ---- Archives ---- */
+
+/*
+ * An open archive. It never changes after opening, except for a counter, so any number of threads may use
+ * it at once; only bp_archive_close must come last. It reads with pread and maps nothing: a file that is
+ * cut or overwritten while open gives errors, never a crash. Every byte is checked against its CRC32
+ * before it is used.
+ */
+typedef struct bp_archive bp_archive;
+
+#define BP_NAME_BYTES_MAX 255
+#define BP_LAYERS_MAX 16
+#define BP_SECTIONS_MAX 64
+
+/*
+ * Opens the archive at `path` (a regular file) and reads its header and the root of its index: at most
+ * 64 + 4096 bytes, whatever its size. The caller closes *out.
+ * Errors: BP_ERROR_IO, BP_ERROR_NOT_OURS, BP_ERROR_UNSUPPORTED, BP_ERROR_CORRUPT, BP_ERROR_CHECKSUM, BP_ERROR_MEMORY.
+ */
+bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error);
+void bp_archive_close(bp_archive *archive); /* NULL is allowed */
+
+/* Number of materials. */
+uint64_t bp_archive_count(const bp_archive *archive);
+
+/* Bytes read from the file so far, over all threads. */
+uint64_t bp_archive_bytes_read(const bp_archive *archive);
+
+/*
+ * The name of material `index`, 0 to count - 1, in the order of the names' bytes; UTF-8, NUL-terminated.
+ * Reads at most one path of index pages (4096 bytes each; two or three in practice).
+ * Errors: BP_ERROR_NOT_FOUND (index too large), and those of damaged or unreadable files.
+ */
+bp_status bp_archive_name(const bp_archive *archive, uint64_t index, char name[BP_NAME_BYTES_MAX + 1], bp_error *error);
+
+/* The number of the material called `name`; BP_ERROR_NOT_FOUND when there is none. Reads as bp_archive_name does. */
+bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t *index, bp_error *error);
+
+/* One layer: what loading it costs and what error is left. */
+typedef struct bp_layer {
+	uint32_t bytes;          /* of the record up to and including this layer, head included */
+	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) over valid cells and channels, e decoded, b measured */
+	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller of the two cosines */
+	double largest_relative; /* largest |e - b|/(b + 1e-2) */
+} bp_layer;
+
+/* One section of a record. */
+typedef struct bp_section {
+	uint32_t type, codec, version; /* as the format's specification numbers them */
+	uint32_t layer;                /* the first layer that needs it */
+	uint32_t flags;                /* bit 0: required, bit 1: colour only */
+	uint32_t bytes;
+	double error;                  /* its own error figure, or NaN */
+} bp_section;
+
+/* Robust regression of one channel on the achromatic model: measured = diffuse + specular * model. */
+typedef struct bp_channel {
+	double diffuse;      /* 1/sr */
+	double specular;     /* a ratio: the model is in 1/sr */
+	double rejected;     /* share of the valid cells that the regression gave no weight */
+	uint32_t iterations;
+	uint32_t converged;  /* 1 or 0 */
+} bp_channel;
+
+/* All that a record's head says. The caller sets struct_bytes; later versions may append members. */
+typedef struct bp_material_info {
+	size_t struct_bytes;       /* sizeof(bp_material_info), set by the caller */
+	char name[BP_NAME_BYTES_MAX + 1];
+	uint32_t profile;          /* 1: paper, 2: default */
+	uint32_t codec_version;
+	uint32_t theta_h, theta_d, phi_d; /* cells of the lattice */
+	uint32_t head_bytes, record_bytes;
+	uint64_t record_offset;    /* in the file */
+	bp_channel channels[3];    /* R, G, B */
+	uint32_t layer_count;
+	bp_layer layers[BP_LAYERS_MAX];
+	uint32_t section_count;
+	bp_section sections[BP_SECTIONS_MAX];
+	uint32_t left_out;         /* pairs that are independent and not stored: bit 0 c_hd, bit 1 c_hphi, bit 2 all c_dphi|h */
+	uint32_t effort;           /* options it was made with */
+	uint32_t budget_bytes;
+	double max_error;          /* 0: a budget was asked for */
+	uint64_t source_bytes;     /* of the measured file */
+	uint8_t source_sha256[32];
+	uint64_t source_nonfinite; /* its cells that were NaN or infinite */
+	double horizon_limit;      /* the lowest cosine at which anything was measured, -1 to 0 */
+} bp_material_info;
+
+/*
+ * What is known of material `index` without loading it; reads its head (about 500 bytes) beside the index.
+ * Errors: BP_ERROR_ARGUMENT (struct_bytes is not that of a version of this header), BP_ERROR_NOT_FOUND, and
+ * those of damaged or unreadable files.
+ */
+bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material_info *info, bp_error *error);
+
+/* One thing that is wrong with an archive. */
+typedef struct bp_problem {
+	const char *material; /* its name, or NULL where the header or the index is meant; valid during the call */
+	bp_error error;       /* offset: in the file */
+} bp_problem;
+
+/* Is shown every problem; a result other than 0 ends the verification. */
+typedef int bp_problem_fn(void *user, const bp_problem *problem);
+
+#define BP_VERIFY_DEEP 1u /* also decode every layer of every material and check its values */
+
+/*
+ * Reads the whole file and checks all checksums, the index, the order of the names, and that there is no
+ * gap, overlap or trailing byte. Goes on after damage as far as the index reaches, and reports each problem.
+ * BP_OK when there is none; otherwise the status of the first, which is also in *error.
+ */
+bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error);
+
 #ifdef __GNUC__
 #pragma GCC visibility pop
 #endif

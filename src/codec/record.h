@@ -11,6 +11,26 @@
 
 enum { RECORD_NAME_BYTES_MAX = 255, RECORD_SECTIONS_MAX = 64, SHA256_BYTES = 32 };
 
+/* Largest record that a reader accepts, largest head, and the smallest of each. */
+enum { RECORD_BYTES_MAX = 1 << 24, RECORD_HEAD_BYTES_MAX = 4096, RECORD_HEAD_BYTES_MIN = 208 + 32 + 1 + 4 };
+
+/* Every record begins with these bytes. */
+#define RECORD_MAGIC "\x8b" "REC\r\n\x1a\n"
+enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 1 };
+
+/* Types of section; 1..15 belong to the paper's profile, 16..31 to the default one. */
+enum section_type {
+	SECTION_MARGINALS = 1, /* scale and the three marginals */
+	SECTION_PAIR_HD = 2,   /* c_hd */
+	SECTION_PAIR_HPHI = 3, /* c_hphi */
+	SECTION_SLICES = 4     /* c_dphi|h */
+};
+
+enum section_flag {
+	SECTION_REQUIRED = 1, /* a reader that does not know the type, codec or version must refuse the layer */
+	SECTION_COLOUR = 2    /* not needed for an achromatic load */
+};
+
 /* The measured file a record was made from. */
 struct record_source {
 	uint64_t bytes;
@@ -26,7 +46,7 @@ struct record_layer {
 struct record_section {
 	uint16_t type, codec, version;
 	uint16_t layer;    /* the first layer that needs it; 0: every load does */
-	uint16_t flags;    /* bit 0: required */
+	uint16_t flags;    /* section_flag; a reader ignores other bits */
 	uint32_t offset;   /* from the record's start */
 	uint32_t bytes;
 	uint32_t crc32;
@@ -51,6 +71,9 @@ struct record_head {
 	uint32_t left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 and are not stored */
 };
 
+/* Bytes of a head, CRC included; a profile subtracts this from its budget before it spends the rest. */
+uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t section_count);
+
 /*
  * Fits and encodes one material: *record is malloc'ed (the caller frees it). The head, parsed
  * from the very bytes, is stored in *head when that is not NULL. A record never exceeds
@@ -60,17 +83,30 @@ bp_status record_pack(const struct lattice *lattice, const char *name, const str
                       const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
                       bp_error *error);
 
-/* Bytes from the record's start that record_head_parse needs at least to find head_bytes. */
+/* Bytes from the record's start that tell head_bytes and record_bytes. */
 enum { RECORD_PROBE_BYTES = 16 };
 
-/* Checks and parses the first `count` bytes of a record (at least its head). Offsets in errors count from the record's start. */
+/* Checks the magic and the two sizes against their limits; nothing else is known yet. For finding records by scanning. */
+bp_status record_probe(const uint8_t bytes[RECORD_PROBE_BYTES], uint32_t *head_bytes, uint32_t *record_bytes, bp_error *error);
+
+/*
+ * Checks and parses the first `count` bytes of a record (at least its head). Offsets in errors count
+ * from the record's start. Profiles, sections and codecs that this reader does not know are no error here.
+ */
 bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_head *head, bp_error *error);
 
-/* Delivers `count` bytes at `offset` from the record's start. */
+/* Delivers `count` bytes at `offset` from the record's start; offsets in its errors are the caller's to understand. */
 typedef bp_status record_fetch_fn(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error);
 
 /* Fetches and checks the sections of layers 0..layers-1 (0: all) and builds the model; the caller frees it with model_free. */
 bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user,
                         struct model **out, bp_error *error);
+
+/*
+ * Copies a record with layers 0..layers-1 only (0: all), its sections byte for byte: *out is malloc'ed.
+ * `count` must be the record's bytes; head and section checksums are checked.
+ */
+bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layers, uint8_t **out, size_t *out_bytes,
+                             bp_error *error);
 
 #endif

@@ -1,0 +1,66 @@
+/* A record's head in the public header's words. */
+#include <string.h>
+
+#include "../error.h"
+#include "reader.h"
+
+_Static_assert(BP_LAYERS_MAX == (int)LAYERS_MAX, "the public limit of layers");
+_Static_assert(BP_SECTIONS_MAX == (int)RECORD_SECTIONS_MAX, "the public limit of sections");
+_Static_assert(BP_NAME_BYTES_MAX == (int)RECORD_NAME_BYTES_MAX, "the public limit of names");
+
+static void info_fill(const struct record_head *head, uint64_t offset, bp_material_info *info)
+{
+	memset(info, 0, sizeof *info);
+	memcpy(info->name, head->name, sizeof info->name);
+	info->profile = (uint32_t)head->profile;
+	info->codec_version = head->codec_version;
+	info->theta_h = head->dims.theta_h;
+	info->theta_d = head->dims.theta_d;
+	info->phi_d = head->dims.phi_d;
+	info->head_bytes = head->head_bytes;
+	info->record_bytes = head->record_bytes;
+	info->record_offset = offset;
+	for (int c = 0; c < 3; c++) {
+		const struct colour_fit *fit = &head->colour[c];
+		info->channels[c] = (bp_channel){ fit->diffuse, fit->specular, fit->rejected, fit->iterations, fit->converged };
+	}
+	info->layer_count = head->layer_count;
+	for (uint32_t l = 0; l < head->layer_count; l++) {
+		const struct fidelity *figures = &head->layers[l].fidelity;
+		info->layers[l] = (bp_layer){ head->layers[l].bytes, figures->log_rmse, figures->cube_root_rmse, figures->largest_relative };
+	}
+	info->section_count = head->section_count;
+	for (uint32_t i = 0; i < head->section_count; i++) {
+		const struct record_section *from = &head->sections[i];
+		info->sections[i] = (bp_section){ from->type, from->codec, from->version, from->layer, from->flags, from->bytes, from->error };
+	}
+	info->left_out = head->left_out;
+	info->effort = (uint32_t)head->options.effort;
+	info->budget_bytes = head->options.budget_bytes;
+	info->max_error = head->options.max_error;
+	info->source_bytes = head->source.bytes;
+	memcpy(info->source_sha256, head->source.sha256, sizeof info->source_sha256);
+	info->source_nonfinite = head->source.nonfinite_count;
+	info->horizon_limit = head->horizon_limit;
+}
+
+bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material_info *info, bp_error *error)
+{
+	struct index_page leaf;
+	struct index_entry entry;
+	struct record_head head;
+	bp_material_info full;
+	bp_status status;
+	if (!info || info->struct_bytes != sizeof full)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_material_info)");
+	leaf.count = 0;
+	status = archive_entry(archive, index, &leaf, &entry, error);
+	if (!status)
+		status = archive_entry_head(archive, &entry, &head, error);
+	if (status)
+		return status;
+	info_fill(&head, entry.offset, &full);
+	full.struct_bytes = sizeof full;
+	*info = full;
+	return BP_OK;
+}

@@ -1,0 +1,307 @@
+#include "reader.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "../codec/name.h"
+#include "../error.h"
+
+struct bp_archive {
+	int fd;
+	char *path;
+	struct archive_header header;
+	_Atomic uint64_t *bytes_read; /* apart, so that a const handle can count */
+	struct index_page root;       /* count 0 when the archive is empty */
+};
+
+/* Turns an offset within a structure into one within the file. */
+static bp_status offset_shift(bp_status status, uint64_t base, bp_error *error)
+{
+	if (status && error && error->offset != BP_NO_OFFSET)
+		error->offset += base;
+	return status;
+}
+
+bp_status archive_read(const struct bp_archive *archive, uint64_t offset, void *bytes, size_t count, bp_error *error)
+{
+	size_t done = 0;
+	while (done < count) {
+		ssize_t got = pread(archive->fd, (uint8_t *)bytes + done, count - done, (off_t)(offset + done));
+		if (got < 0 && errno == EINTR)
+			continue;
+		if (got < 0)
+			return error_set(error, BP_ERROR_IO, offset + done, "%s: cannot read: %s", archive->path, strerror(errno));
+		if (got == 0)
+			return error_set(error, BP_ERROR_CORRUPT, offset + done, "the file ends here, %zu more bytes were expected",
+			                 count - done);
+		done += (size_t)got;
+		*archive->bytes_read += (uint64_t)got;
+	}
+	return BP_OK;
+}
+
+const struct archive_header *archive_header(const struct bp_archive *archive)
+{
+	return &archive->header;
+}
+
+const char *archive_path(const struct bp_archive *archive)
+{
+	return archive->path;
+}
+
+bp_status archive_page_read(const struct bp_archive *archive, const struct page_expect *expect, struct index_page *page,
+                            bp_error *error)
+{
+	uint64_t offset = archive->header.index_offset + (uint64_t)expect->number * PAGE_BYTES;
+	bp_status status;
+	page->count = 0;
+	if (expect->number >= archive->header.page_count)
+		return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the index points to page %u of %u", expect->number,
+		                 archive->header.page_count);
+	status = archive_read(archive, offset, page->bytes, PAGE_BYTES, error);
+	if (!status)
+		status = offset_shift(index_page_parse(page, expect, error), offset, error);
+	if (status)
+		page->count = 0;
+	return status;
+}
+
+static bp_status file_open(const char *path, int *fd, uint64_t *file_bytes, bp_error *error)
+{
+	struct stat found;
+	/* Not blocking, so that a FIFO is refused rather than waited for. */
+	*fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+	if (*fd < 0 || fstat(*fd, &found) != 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
+	if (!S_ISREG(found.st_mode))
+		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "not a regular file, so not a brdfpack archive");
+	*file_bytes = (uint64_t)found.st_size;
+	return BP_OK;
+}
+
+static bp_status header_and_root_read(struct bp_archive *archive, uint64_t file_bytes, bp_error *error)
+{
+	uint8_t bytes[ARCHIVE_HEADER_BYTES];
+	size_t count = file_bytes < sizeof bytes ? (size_t)file_bytes : sizeof bytes;
+	struct page_expect root;
+	bp_status status = archive_read(archive, 0, bytes, count, error);
+	if (!status)
+		status = archive_header_parse(bytes, count, file_bytes, &archive->header, error);
+	if (status || archive->header.count == 0)
+		return status;
+	root = (struct page_expect){ .number = archive->header.page_count - 1, .level = archive->header.depth - 1 };
+	return archive_page_read(archive, &root, &archive->root, error);
+}
+
+bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
+{
+	struct bp_archive *archive;
+	uint64_t file_bytes = 0;
+	bp_status status;
+
+	if (!path || !out)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a path and a place for the handle are needed");
+	archive = calloc(1, sizeof *archive);
+	if (!archive)
+		return error_memory(error, sizeof *archive);
+	archive->fd = -1;
+	archive->path = strdup(path);
+	archive->bytes_read = calloc(1, sizeof *archive->bytes_read);
+	if (!archive->path || !archive->bytes_read)
+		status = error_memory(error, strlen(path) + 1);
+	else
+		status = file_open(path, &archive->fd, &file_bytes, error);
+	if (!status)
+		status = header_and_root_read(archive, file_bytes, error);
+	if (status) {
+		bp_archive_close(archive);
+		return status;
+	}
+	*out = archive;
+	return BP_OK;
+}
+
+void bp_archive_close(bp_archive *archive)
+{
+	if (!archive)
+		return;
+	if (archive->fd >= 0)
+		close(archive->fd);
+	free(archive->path);
+	free((void *)archive->bytes_read);
+	free(archive);
+}
+
+uint64_t bp_archive_count(const bp_archive *archive)
+{
+	return archive->header.count;
+}
+
+uint64_t bp_archive_bytes_read(const bp_archive *archive)
+{
+	return *archive->bytes_read;
+}
+
+/* Follows one path of pages from the root to the leaf that holds the name (or, name NULL, the ordinal). */
+static bp_status leaf_find(const struct bp_archive *archive, const char *name, uint64_t ordinal, struct index_page *leaf,
+                           bp_error *error)
+{
+	struct index_page inner;
+	const struct index_page *page = &archive->root;
+	while (page->level) {
+		uint32_t i = name ? index_search_name(page, name, strlen(name)) : index_search_ordinal(page, ordinal);
+		struct page_expect child;
+		char first_name[BP_NAME_BYTES_MAX + 1];
+		bp_status status;
+		if (i == UINT32_MAX)
+			i = 0; /* the name comes before all others: the first leaf will not have it */
+		child = index_child(page, i);
+		/* The page is about to be overwritten by its child. */
+		memcpy(first_name, child.first_name, child.first_name_bytes);
+		child.first_name = first_name;
+		status = archive_page_read(archive, &child, child.level ? &inner : leaf, error);
+		if (status)
+			return status;
+		page = child.level ? &inner : leaf;
+	}
+	if (page == &archive->root)
+		*leaf = *page;
+	return BP_OK;
+}
+
+bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct index_page *leaf, struct index_entry *entry,
+                        bp_error *error)
+{
+	if (index >= archive->header.count)
+		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material %llu; the archive has %llu",
+		                 (unsigned long long)index, (unsigned long long)archive->header.count);
+	if (leaf->count == 0 || index < leaf->first_ordinal || index - leaf->first_ordinal >= leaf->count) {
+		bp_status status = leaf_find(archive, NULL, index, leaf, error);
+		if (status)
+			return status;
+		if (index < leaf->first_ordinal || index - leaf->first_ordinal >= leaf->count)
+			return error_set(error, BP_ERROR_CORRUPT, archive->header.index_offset + (uint64_t)leaf->number * PAGE_BYTES,
+			                 "index page %u should hold material %llu", leaf->number, (unsigned long long)index);
+	}
+	index_leaf_entry(leaf, (uint32_t)(index - leaf->first_ordinal), entry);
+	return BP_OK;
+}
+
+bp_status bp_archive_name(const bp_archive *archive, uint64_t index, char name[BP_NAME_BYTES_MAX + 1], bp_error *error)
+{
+	struct index_page leaf;
+	struct index_entry entry;
+	bp_status status;
+	leaf.count = 0;
+	status = archive_entry(archive, index, &leaf, &entry, error);
+	if (!status)
+		memcpy(name, entry.name, entry.name_bytes + 1);
+	return status;
+}
+
+bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t *index, bp_error *error)
+{
+	struct index_page leaf;
+	uint32_t i, bytes;
+	const char *here;
+	bp_status status;
+	if (!name || !index)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a name and a place for its number are needed");
+	if (archive->header.count == 0)
+		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material \"%s\"", name);
+	status = leaf_find(archive, name, 0, &leaf, error);
+	if (status)
+		return status;
+	i = index_search_name(&leaf, name, strlen(name));
+	here = i == UINT32_MAX ? "" : index_entry_name(&leaf, i, &bytes);
+	if (i == UINT32_MAX || name_compare(here, bytes, name, strlen(name)) != 0)
+		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material \"%s\"", name);
+	if (leaf.first_ordinal + i >= archive->header.count)
+		return error_set(error, BP_ERROR_CORRUPT, archive->header.index_offset + (uint64_t)leaf.number * PAGE_BYTES,
+		                 "the index numbers \"%s\" %llu of %llu", name, (unsigned long long)leaf.first_ordinal + i,
+		                 (unsigned long long)archive->header.count);
+	*index = leaf.first_ordinal + i;
+	return BP_OK;
+}
+
+/* The record lies between header and index. */
+static bp_status entry_check(const struct bp_archive *archive, const struct index_entry *entry, bp_error *error)
+{
+	uint64_t end = archive->header.index_offset;
+	if (entry->offset < ARCHIVE_HEADER_BYTES || entry->offset > end || end - entry->offset < entry->record_bytes)
+		return error_set(error, BP_ERROR_CORRUPT, entry->offset, "%s: the index places %u bytes at %llu, records end at %llu",
+		                 entry->name, entry->record_bytes, (unsigned long long)entry->offset, (unsigned long long)end);
+	return BP_OK;
+}
+
+/* The head that was read is the one that the index promised. */
+static bp_status head_check(const struct index_entry *entry, const struct record_head *head, bp_error *error)
+{
+	if (strcmp(entry->name, head->name) != 0 || entry->head_bytes != head->head_bytes ||
+	    entry->record_bytes != head->record_bytes)
+		return error_set(error, BP_ERROR_CORRUPT, entry->offset, "the index promises \"%s\" of %u bytes here, there is \"%s\" of %u",
+		                 entry->name, entry->record_bytes, head->name, head->record_bytes);
+	return BP_OK;
+}
+
+bp_status archive_entry_head(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *out,
+                             bp_error *error)
+{
+	uint8_t bytes[RECORD_HEAD_BYTES_MAX];
+	struct record_head head;
+	bp_status status = entry_check(archive, entry, error);
+	if (!status)
+		status = archive_read(archive, entry->offset, bytes, entry->head_bytes, error);
+	if (!status)
+		status = offset_shift(record_head_parse(bytes, entry->head_bytes, &head, error), entry->offset, error);
+	if (!status)
+		status = head_check(entry, &head, error);
+	if (!status)
+		*out = head;
+	return status;
+}
+
+bp_status archive_entry_record(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *out,
+                               uint8_t **out_record, bp_error *error)
+{
+	struct record_head head;
+	uint8_t *record = NULL;
+	bp_status status = entry_check(archive, entry, error);
+	if (status)
+		return status;
+	record = malloc(entry->record_bytes);
+	if (!record)
+		return error_memory(error, entry->record_bytes);
+	status = archive_read(archive, entry->offset, record, entry->record_bytes, error);
+	if (!status)
+		status = offset_shift(record_head_parse(record, entry->record_bytes, &head, error), entry->offset, error);
+	if (!status)
+		status = head_check(entry, &head, error);
+	for (uint32_t i = 0; !status && i < head.section_count; i++) {
+		const struct record_section *section = &head.sections[i];
+		if (bytes_crc32(record + section->offset, section->bytes) != section->crc32)
+			status = error_set(error, BP_ERROR_CHECKSUM, entry->offset + section->offset, "the checksum of section %u differs", i);
+	}
+	if (status) {
+		free(record);
+		return status;
+	}
+	*out = head;
+	*out_record = record;
+	return BP_OK;
+}
+
+bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct record_head *head, bp_error *error)
+{
+	struct index_page leaf;
+	struct index_entry entry;
+	bp_status status;
+	leaf.count = 0;
+	status = archive_entry(archive, index, &leaf, &entry, error);
+	return status ? status : archive_entry_head(archive, &entry, head, error);
+}

@@ -1,0 +1,143 @@
+#include "writer.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../codec/name.h"
+#include "../codec/record.h"
+#include "../error.h"
+#include "index.h"
+#include "temporary.h"
+
+enum { BUFFER_BYTES = 1 << 18 };
+
+struct archive_writer {
+	struct temporary_file file;
+	struct index_builder index;
+	uint64_t file_bytes; /* written so far, the buffer included */
+	size_t buffered;
+	char last_name[RECORD_NAME_BYTES_MAX + 1]; /* "" before the first record */
+	uint8_t buffer[BUFFER_BYTES];
+};
+
+static bp_status bytes_put(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
+{
+	while (count) {
+		ssize_t put = write(writer->file.fd, bytes, count);
+		if (put < 0 && errno == EINTR)
+			continue;
+		if (put <= 0)
+			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot write: %s", writer->file.target,
+			                 put < 0 ? strerror(errno) : "no space");
+		bytes += put;
+		count -= (size_t)put;
+	}
+	return BP_OK;
+}
+
+static bp_status buffer_flush(struct archive_writer *writer, bp_error *error)
+{
+	size_t count = writer->buffered;
+	writer->buffered = 0;
+	return bytes_put(writer, writer->buffer, count, error);
+}
+
+static bp_status writer_append(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
+{
+	bp_status status = BP_OK;
+	if (count > BUFFER_BYTES - writer->buffered)
+		status = buffer_flush(writer, error);
+	if (!status && count > BUFFER_BYTES) {
+		status = bytes_put(writer, bytes, count, error);
+	} else if (!status) {
+		memcpy(writer->buffer + writer->buffered, bytes, count);
+		writer->buffered += count;
+	}
+	if (!status)
+		writer->file_bytes += count;
+	return status;
+}
+
+bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
+{
+	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES];
+	struct archive_writer *writer = calloc(1, sizeof *writer);
+	bp_status status;
+	if (!writer)
+		return error_memory(error, sizeof *writer);
+	writer->file.fd = -1;
+	status = temporary_create(path, &writer->file, error);
+	if (!status)
+		status = writer_append(writer, header_to_come, sizeof header_to_come, error);
+	if (status) {
+		archive_writer_discard(writer);
+		return status;
+	}
+	*out = writer;
+	return BP_OK;
+}
+
+const char *archive_writer_temporary(const struct archive_writer *writer)
+{
+	return writer->file.path;
+}
+
+bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
+{
+	struct record_head head;
+	bp_status status = record_head_parse(record, record_bytes, &head, error);
+	if (status)
+		return status;
+	if (head.record_bytes != record_bytes)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: a record of %u bytes was given as %zu", head.name,
+		                 head.record_bytes, record_bytes);
+	if (writer->last_name[0] &&
+	    name_compare(writer->last_name, strlen(writer->last_name), head.name, strlen(head.name)) >= 0)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: comes after %s, names must ascend", head.name,
+		                 writer->last_name);
+	memcpy(writer->last_name, head.name, sizeof head.name);
+	index_add(&writer->index, head.name, writer->file_bytes, head.record_bytes, head.head_bytes);
+	return writer_append(writer, record, record_bytes, error);
+}
+
+static bp_status page_append(void *user, const uint8_t page[PAGE_BYTES], bp_error *error)
+{
+	return writer_append(user, page, PAGE_BYTES, error);
+}
+
+static bp_status header_put(struct archive_writer *writer, const struct archive_header *header, bp_error *error)
+{
+	uint8_t bytes[ARCHIVE_HEADER_BYTES];
+	archive_header_write(header, bytes);
+	if (lseek(writer->file.fd, 0, SEEK_SET) != 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot seek: %s", writer->file.target, strerror(errno));
+	return bytes_put(writer, bytes, sizeof bytes, error);
+}
+
+bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
+{
+	struct archive_header header = {
+		.major = ARCHIVE_MAJOR, .minor = ARCHIVE_MINOR, .count = writer->index.count, .index_offset = writer->file_bytes,
+	};
+	bp_status status = index_write(&writer->index, page_append, writer, &header.page_count, &header.depth, error);
+	if (!status)
+		status = buffer_flush(writer, error);
+	header.file_bytes = writer->file_bytes;
+	if (!status)
+		status = header_put(writer, &header, error);
+	if (!status)
+		status = temporary_commit(&writer->file, error);
+	archive_writer_discard(writer);
+	return status;
+}
+
+void archive_writer_discard(struct archive_writer *writer)
+{
+	if (!writer)
+		return;
+	temporary_discard(&writer->file);
+	index_builder_free(&writer->index);
+	free(writer);
+}

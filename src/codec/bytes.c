@@ -1,0 +1,167 @@
+#include "bytes.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+struct byte_reader byte_reader_over(const void *bytes, size_t count)
+{
+	return (struct byte_reader){ .bytes = bytes, .count = count };
+}
+
+size_t byte_reader_left(const struct byte_reader *reader)
+{
+	return reader->count - reader->at;
+}
+
+const uint8_t *read_span(struct byte_reader *reader, size_t count)
+{
+	const uint8_t *span;
+	if (reader->failed || count > byte_reader_left(reader)) {
+		reader->failed = true;
+		return NULL;
+	}
+	span = reader->bytes + reader->at;
+	reader->at += count;
+	return span;
+}
+
+void read_bytes(struct byte_reader *reader, void *out, size_t count)
+{
+	const uint8_t *span = read_span(reader, count);
+	if (!count)
+		return;
+	if (span)
+		memcpy(out, span, count);
+	else
+		memset(out, 0, count);
+}
+
+static uint64_t read_little_endian(struct byte_reader *reader, unsigned count)
+{
+	const uint8_t *span = read_span(reader, count);
+	uint64_t value = 0;
+	if (span)
+		for (unsigned i = count; i-- > 0;)
+			value = value << 8 | span[i];
+	return value;
+}
+
+uint8_t read_u8(struct byte_reader *reader) { return (uint8_t)read_little_endian(reader, 1); }
+uint16_t read_u16(struct byte_reader *reader) { return (uint16_t)read_little_endian(reader, 2); }
+uint32_t read_u32(struct byte_reader *reader) { return (uint32_t)read_little_endian(reader, 4); }
+uint64_t read_u64(struct byte_reader *reader) { return read_little_endian(reader, 8); }
+
+float read_f32(struct byte_reader *reader)
+{
+	uint32_t bits = read_u32(reader);
+	float value;
+	memcpy(&value, &bits, sizeof value);
+	return value;
+}
+
+double read_f64(struct byte_reader *reader)
+{
+	uint64_t bits = read_u64(reader);
+	double value;
+	memcpy(&value, &bits, sizeof value);
+	return value;
+}
+
+static uint8_t *buffer_extend(struct byte_buffer *buffer, size_t count)
+{
+	if (buffer->failed)
+		return NULL;
+	if (count > buffer->capacity - buffer->count) {
+		size_t capacity = buffer->capacity ? buffer->capacity : 256;
+		uint8_t *grown;
+		while (capacity - buffer->count < count) {
+			if (capacity > SIZE_MAX / 2) {
+				buffer->failed = true;
+				return NULL;
+			}
+			capacity *= 2;
+		}
+		grown = realloc(buffer->bytes, capacity);
+		if (!grown) {
+			buffer->failed = true;
+			return NULL;
+		}
+		buffer->bytes = grown;
+		buffer->capacity = capacity;
+	}
+	buffer->count += count;
+	return buffer->bytes + buffer->count - count;
+}
+
+void write_bytes(struct byte_buffer *buffer, const void *bytes, size_t count)
+{
+	uint8_t *to = count ? buffer_extend(buffer, count) : NULL;
+	if (to)
+		memcpy(to, bytes, count);
+}
+
+void write_zeros(struct byte_buffer *buffer, size_t count)
+{
+	uint8_t *to = count ? buffer_extend(buffer, count) : NULL;
+	if (to)
+		memset(to, 0, count);
+}
+
+static void write_little_endian(struct byte_buffer *buffer, uint64_t value, unsigned count)
+{
+	uint8_t *to = buffer_extend(buffer, count);
+	if (to)
+		for (unsigned i = 0; i < count; i++)
+			to[i] = (uint8_t)(value >> 8 * i);
+}
+
+void write_u8(struct byte_buffer *buffer, uint8_t value) { write_little_endian(buffer, value, 1); }
+void write_u16(struct byte_buffer *buffer, uint16_t value) { write_little_endian(buffer, value, 2); }
+void write_u32(struct byte_buffer *buffer, uint32_t value) { write_little_endian(buffer, value, 4); }
+void write_u64(struct byte_buffer *buffer, uint64_t value) { write_little_endian(buffer, value, 8); }
+
+void write_f32(struct byte_buffer *buffer, float value)
+{
+	uint32_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	write_u32(buffer, bits);
+}
+
+void write_f64(struct byte_buffer *buffer, double value)
+{
+	uint64_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	write_u64(buffer, bits);
+}
+
+void byte_buffer_free(struct byte_buffer *buffer)
+{
+	free(buffer->bytes);
+	*buffer = (struct byte_buffer){ 0 };
+}
+
+uint32_t bytes_crc32_more(uint32_t crc, const void *bytes, size_t count)
+{
+	return (uint32_t)crc32_z(crc, bytes, count);
+}
+
+uint32_t bytes_crc32(const void *bytes, size_t count)
+{
+	return bytes_crc32_more(0, count ? bytes : (const void *)"", count);
+}
+
+void store_u32(uint8_t *at, uint32_t value)
+{
+	for (unsigned i = 0; i < 4; i++)
+		at[i] = (uint8_t)(value >> 8 * i);
+}
+
+uint16_t load_u16(const uint8_t *at) { return (uint16_t)(at[0] | at[1] << 8); }
+
+uint32_t load_u32(const uint8_t *at)
+{
+	return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+}
+
+uint64_t load_u64(const uint8_t *at) { return load_u32(at) | (uint64_t)load_u32(at + 4) << 32; }
