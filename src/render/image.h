@@ -1,0 +1,44 @@
+/*
+ * image.h: linear images -> exposure -> sRGB -> files.
+ */
+#ifndef RENDER_IMAGE_H
+#define RENDER_IMAGE_H
+
+#include "sphere.h"
+
+/*
+ * The factor that brings the reference's 90th percentile of the channel mean to 0.9: with the n covered
+ * pixels' means (R + G + B)/3 in ascending order, 0.9 / max(1e-12, mean[floor(0.9 n)]), in 1/unit.
+ */
+bp_status image_exposure(const struct sphere_image *reference, double *exposure, bp_error *error);
+
+/* IEC 61966-2-1: linear, clamped to 0 .. 1, to the sRGB curve in 0 .. 1. */
+double image_srgb(double linear);
+
+/* 8-bit RGB, interleaved, top row first: what a PNG file holds. */
+struct picture {
+	uint32_t width, height;
+	uint8_t *rgb;
+};
+bp_status picture_alloc(uint32_t width, uint32_t height, struct picture *out, bp_error *error);
+void picture_free(struct picture *picture);
+
+/* Exposed image in sRGB at column x of the picture; values that are not finite become magenta. */
+void picture_place(struct picture *picture, uint32_t x, const struct sphere_image *image, double exposure);
+
+/*
+ * reference | reconstruction | difference x10, side by side: |a - b| of the two images in sRGB, times 10,
+ * in 8 bits.
+ */
+bp_status picture_compare(const struct sphere_image *reference, const struct sphere_image *estimate, struct picture *out,
+                          bp_error *error);
+
+/*
+ * Files. Each is written to a temporary file beside `path`, then renamed: an older file is replaced whole
+ * or not at all. PFM: RGB float32 little-endian, bottom row first; the scale field is -unit, -1 in all
+ * but tables of extreme magnitude.
+ */
+bp_status picture_write_png(const char *path, const struct picture *picture, bp_error *error);
+bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp_error *error);
+
+#endif

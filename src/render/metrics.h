@@ -1,0 +1,67 @@
+/*
+ * metrics.h: error figures of rendered images and of tables, and the energy of a table.
+ *
+ * Figures of tables over valid cells (log RMSE, cube-root RMSE, largest relative error) are
+ * fidelity_measure's (model/fidelity.h); what stands here needs the angles or an image.
+ */
+#ifndef RENDER_METRICS_H
+#define RENDER_METRICS_H
+
+#include "image.h"
+
+/*
+ * Peak signal to noise ratio in dB of two images of one size and unit, over covered pixels and three channels,
+ * both exposed by the reference's exposure (image_exposure) and brought to sRGB:
+ *
+ *     real       10 log10(1 / max(1e-12, mean (a - b)^2))                                   at most 120 dB
+ *     eight_bit  10 log10(255^2 / max(1e-6, mean (round(255 a) - round(255 b))^2))       at most 108.13 dB
+ *
+ * Cells that are invalid in the reference are 0 in both tables (sphere_table_*), so what a coder puts there
+ * does not count. A value of the estimate that is not finite counts as 1 - a.
+ */
+struct psnr {
+	double eight_bit, real;
+};
+bp_status metrics_psnr(const struct sphere_image *reference, const struct sphere_image *estimate, struct psnr *out,
+                       bp_error *error);
+
+/*
+ * Where |e - b|/(b + 1e-2) is largest, over valid cells and the three channels; e decoded, b measured, in 1/sr
+ * (the same figure as fidelity.largest_relative; offset as in the project's published figures). The first such cell
+ * in storage order, channels R, G, B in turn. Angles in degrees, of the cell's lower corner. value 0 and cell 0 when
+ * the tables agree everywhere.
+ */
+struct worst_cell {
+	double value;
+	uint32_t i, j, k;
+	int channel;
+	double theta_h, theta_d, phi_d;
+};
+void metrics_worst_cell(const struct lattice *truth, const struct expansion *table, struct worst_cell *out);
+
+/*
+ * Energy: the largest directional albedo, the share of the light from one direction that the surface sends back,
+ *
+ *     albedo(theta_o) = integral over the upper hemisphere of f cos(theta_i) d omega_i
+ *
+ * (Nicodemus et al. 1977, directional-hemispherical reflectance), over theta_o = 0, 5, ... 85 degrees and the three
+ * channels. More than 1 means that energy is made. Beyond 85 degrees measured tables hold next to nothing.
+ *
+ * Quadrature over the half vector, d omega_i = 4 cos(theta_d) d omega_h (Torrance and Sparrow 1967), so that narrow
+ * highlights are met: midpoints of 180 steps of sqrt(theta_h/(pi/2)), two per cell of MERL, by 90 of half a turn
+ * of phi_h; f is looked up as lookup.h says. Cells that are 0 because they are invalid add nothing, so the figure
+ * of a measured table is a lower bound. A constant f = 1/pi gives 1 to within 5e-4.
+ */
+enum { ENERGY_DIRECTIONS = 18, ENERGY_STEP_DEGREES = 5 };
+struct energy {
+	double albedo[ENERGY_DIRECTIONS][3]; /* [theta_o / 5 degrees][channel] */
+	double largest;
+	double theta_o; /* degrees, of the largest */
+	int channel;    /* of the largest */
+};
+struct energy_plan;
+bp_status energy_plan_make(struct lattice_dims dims, struct energy_plan **out, bp_error *error);
+void energy_plan_free(struct energy_plan *plan); /* NULL is allowed */
+void energy_measure(const struct energy_plan *plan, const struct lookup_table *table, struct energy *out);
+
+#endif

@@ -1,0 +1,123 @@
+#include "image.h"
+
+#include <math.h>
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../error.h"
+#include "../output_file.h"
+
+bp_status picture_alloc(uint32_t width, uint32_t height, struct picture *out, bp_error *error)
+{
+	size_t bytes = (size_t)3 * width * height;
+	uint8_t *rgb = calloc(bytes ? bytes : 1, 1);
+	if (!rgb)
+		return error_memory(error, bytes);
+	*out = (struct picture){.width = width, .height = height, .rgb = rgb};
+	return BP_OK;
+}
+
+void picture_free(struct picture *picture)
+{
+	if (picture) {
+		free(picture->rgb);
+		*picture = (struct picture){0};
+	}
+}
+
+static uint8_t to_byte(double x)
+{
+	return (uint8_t)(fmin(1, fmax(0, x)) * 255 + 0.5);
+}
+
+void picture_place(struct picture *picture, uint32_t x, const struct sphere_image *image, double exposure)
+{
+	for (uint32_t row = 0; row < image->size; row++) {
+		const float *from = image->rgb + (size_t)3 * row * image->size;
+		uint8_t *to = picture->rgb + 3 * (x + (size_t)row * picture->width);
+		for (uint32_t n = 0; n < image->size; n++, from += 3, to += 3) {
+			bool finite = isfinite(from[0]) && isfinite(from[1]) && isfinite(from[2]);
+			for (int c = 0; c < 3; c++)
+				to[c] = finite ? to_byte(image_srgb(from[c] * exposure)) : c == 1 ? 0 : 255;
+		}
+	}
+}
+
+bp_status picture_compare(const struct sphere_image *reference, const struct sphere_image *estimate, struct picture *out,
+                          bp_error *error)
+{
+	const uint32_t size = reference->size;
+	double exposure;
+	struct picture picture;
+	bp_status status = image_exposure(reference, &exposure, error);
+	if (status == BP_OK)
+		status = picture_alloc(3 * size, size, &picture, error);
+	if (status != BP_OK)
+		return status;
+	picture_place(&picture, 0, reference, exposure);
+	picture_place(&picture, size, estimate, exposure);
+	for (uint32_t y = 0; y < size; y++)
+		for (uint32_t x = 0; x < 3 * size; x++) {
+			size_t n = x + (size_t)3 * size * y;
+			double a = image_srgb(reference->rgb[n] * exposure), b = estimate->rgb[n];
+			b = isfinite(b) ? image_srgb(b * exposure) : 1 - a;
+			picture.rgb[(size_t)3 * 3 * size * y + 6 * size + x] = to_byte(10 * fabs(a - b));
+		}
+	*out = picture;
+	return BP_OK;
+}
+
+/* All of `bytes` to `path`, whole or not at all. */
+static bp_status write_whole(const char *path, const void *bytes, size_t count, bp_error *error)
+{
+	struct output_file file;
+	bp_status status = output_file_open(path, &file, error);
+	if (status != BP_OK)
+		return status;
+	status = output_file_write(&file, bytes, count, error);
+	if (status == BP_OK)
+		return output_file_commit(&file, error);
+	output_file_discard(&file);
+	return status;
+}
+
+bp_status picture_write_png(const char *path, const struct picture *picture, bp_error *error)
+{
+	png_image png = {.version = PNG_IMAGE_VERSION, .width = picture->width, .height = picture->height, .format = PNG_FORMAT_RGB};
+	png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
+	void *memory = malloc(bytes);
+	if (!memory)
+		return error_memory(error, bytes);
+	bp_status status;
+	if (png_image_write_to_memory(&png, memory, &bytes, 0, picture->rgb, 0, NULL))
+		status = write_whole(path, memory, bytes, error);
+	else
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot encode as PNG: %s", path, png.message);
+	png_image_free(&png);
+	free(memory);
+	return status;
+}
+
+bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp_error *error)
+{
+	char head[96];
+	/* a negative scale means little-endian; its magnitude is the unit */
+	size_t head_bytes = (size_t)snprintf(head, sizeof head, "PF\n%u %u\n%.9g\n", image->size, image->size, -image->unit);
+	size_t row = 3 * (size_t)image->size, bytes = head_bytes + row * image->size * sizeof(float);
+	uint8_t *memory = malloc(bytes), *to = memory;
+	if (!memory)
+		return error_memory(error, bytes);
+	memcpy(to, head, head_bytes);
+	to += head_bytes;
+	for (uint32_t y = image->size; y-- > 0;)
+		for (size_t n = 0; n < row; n++, to += 4) {
+			uint32_t bits;
+			memcpy(&bits, &image->rgb[row * y + n], 4);
+			for (int b = 0; b < 4; b++)
+				to[b] = (uint8_t)(bits >> (8 * b));
+		}
+	bp_status status = write_whole(path, memory, bytes, error);
+	free(memory);
+	return status;
+}
