@@ -21,6 +21,25 @@ struct fidelity_sums {
 	double largest_relative;
 };
 
+/* Observations of one regression; see robust.h. excess = 1/sqrt(1 - leverage) - 1. */
+struct robust_sample {
+	const double *x, *y;
+	const float *excess;
+	size_t n;
+};
+
+/* y = centre_y + slope (x - centre_x) */
+struct robust_line {
+	double centre_x, centre_y, slope;
+};
+
+/* Sums over the sample: dx = x - centre_x, r = y - line, w = q^2 the bisquare weight. */
+struct robust_sums {
+	double root; /* of q = max(0, 1 - u^2) */
+	double w, wx, wxx, wr, wxr;
+	size_t rejected; /* observations of weight 0 */
+};
+
 struct kernels {
 	/*
 	 * Adds the n cells of one channel of one theta_h slice to *sums: b measured, unit * e decoded, in 1/sr;
@@ -28,6 +47,16 @@ struct kernels {
 	 */
 	void (*fidelity_slice)(const double *b, const float *e, const uint8_t *valid, const float *cosine, size_t n, double unit,
 	                       struct fidelity_sums *sums);
+
+	/*
+	 * With v = |y - line| (1 + excess) of every observation: *below = how many are < low; copies those in [low, high] to
+	 * inside (n + 1 long) and returns how many they are.
+	 */
+	size_t (*robust_scale)(const struct robust_sample *sample, const struct robust_line *line, double low, double high,
+	                       double *inside, size_t *below);
+	/* The weighted sums with u = (y - line) (1 + excess) inverse_scale. Blocks of 512 in four lanes, blocks compensated. */
+	void (*robust_sums)(const struct robust_sample *sample, const struct robust_line *line, double inverse_scale,
+	                    struct robust_sums *out);
 };
 
 /* The table for this processor. Thread-safe; never NULL. */

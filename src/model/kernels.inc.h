@@ -3,7 +3,10 @@
 #include "vector.h"
 
 #include "fidelity.inc.h"
+#include "robust.inc.h"
 
 const struct kernels KERNEL(kernels) = {
 	.fidelity_slice = KERNEL(fidelity_slice),
+	.robust_scale = KERNEL(robust_scale),
+	.robust_sums = KERNEL(robust_sums),
 };

@@ -1,0 +1,53 @@
+/*
+ * robust.h: robust linear regression y = intercept + slope x (DuMouchel and O'Brien 1989).
+ *
+ * Ordinary least squares first. Leverages h = 1/n + (x - mean)^2/Sxx of the unweighted design, clipped at
+ * 0.9999. Then, at most 100 times:
+ *
+ *     v = r/sqrt(1 - h)                            r = y - intercept - slope x
+ *     s = median|v|/0.6745                         without the smallest |v|; not centred
+ *     u = v/(4.685 max(s, 1e-6 sd(y)))             sd(y) counts as 1e6 where it is 0
+ *     w = (1 - u^2)^2 where |u| < 1, else 0        and weighted least squares
+ *
+ * until each coefficient changes by at most sqrt(eps) max(|c|, |previous c|). This is what GSL's
+ * gsl_multifit_robust does with gsl_multifit_robust_bisquare. Where x is constant (over all observations, or
+ * over those that still have weight) the two coefficients are not determined; the answer is then the one of least
+ * norm after the columns 1 and x were scaled by powers of two to similar size, which is GSL's choice too.
+ *
+ * One deviation, for speed: an intercept whose change is below the rounding errors of the data (8 eps times the
+ * size of the terms it is the difference of) counts as converged even if it is nearly 0 itself; GSL goes on to
+ * its iteration limit there, with the same result.
+ *
+ * Per iteration the observations are read twice and copied never: the median is found by counting what lies
+ * below a bracket around the expected median and collecting the few inside it.
+ * Sums are compensated and taken about the weighted mean of the iteration before, so neither a large common
+ * offset nor a tiny or huge unit (1e-300 to 1e300) loses digits.
+ */
+#ifndef MODEL_ROBUST_H
+#define MODEL_ROBUST_H
+
+#include "model.h"
+
+enum { ROBUST_ITERATIONS_MAX = 100 };
+
+struct robust_fit {
+	double intercept, slope;
+	uint32_t iterations;
+	bool converged;
+	size_t rejected; /* observations of weight 0 in the last iteration */
+};
+
+/*
+ * n >= 1 finite observations. One observation: intercept y, slope 0. BP_ERROR_ARGUMENT for n = 0,
+ * BP_ERROR_MEMORY. Takes 20 n bytes of its own (28 n while it runs). Deterministic.
+ */
+bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error);
+
+/*
+ * Colour: for each channel the regression of the measured values (1/sr) on unit * achromatic over the
+ * lattice's valid cells; achromatic[cells].
+ */
+bp_status robust_fit_colour(const struct lattice *lattice, const float *achromatic, double unit, struct colour_fit out[3],
+                            bp_error *error);
+
+#endif

@@ -1,0 +1,118 @@
+/* robust.inc.h: the two passes of one iteration of robust.h. See kernels.h. */
+
+enum { ROBUST_BLOCK = 512, ROBUST_GROUP = 16 };
+
+static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const struct robust_line *line, double low, double high,
+                                   double *inside, size_t *below)
+{
+	const double *x = sample->x, *y = sample->y;
+	const float *excess = sample->excess;
+	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), b = LANES_ALL(line->slope);
+	const lanes4 lo = LANES_ALL(low), hi = LANES_ALL(high);
+	const mask4 sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
+	mask4 less = {0, 0, 0, 0};
+	size_t count = 0, n4 = sample->n / ROBUST_GROUP * ROBUST_GROUP;
+
+	for (size_t i = 0; i < n4; i += ROBUST_GROUP) {
+		lanes4 r[ROBUST_GROUP / 4];
+		mask4 any = {0, 0, 0, 0};
+		for (int g = 0; g < ROBUST_GROUP / 4; g++) {
+			const size_t at = i + 4 * (size_t)g;
+			lanes4 f = __builtin_convertvector(FLOATS_LOAD(excess + at), lanes4);
+			lanes4 v = (LANES_LOAD(y + at) - c) - b * (LANES_LOAD(x + at) - xo);
+			v = v + v * f;
+			v = (lanes4)((mask4)v & sign);
+			r[g] = v;
+			less += (mask4)(v < lo); /* true is -1 */
+			any |= (mask4)(v >= lo) & (mask4)(v <= hi);
+		}
+		if (any[0] | any[1] | any[2] | any[3])
+			for (int g = 0; g < ROBUST_GROUP / 4; g++)
+				for (int l = 0; l < 4; l++) {
+					inside[count] = r[g][l];
+					count += r[g][l] >= low && r[g][l] <= high;
+				}
+	}
+	*below = (size_t)-(less[0] + less[1] + less[2] + less[3]);
+	for (size_t i = n4; i < sample->n; i++) {
+		double v = (y[i] - line->centre_y) - line->slope * (x[i] - line->centre_x);
+		v = v + v * (double)excess[i];
+		v = v < 0 ? -v : v;
+		*below += v < low;
+		inside[count] = v;
+		count += v >= low && v <= high;
+	}
+	return count;
+}
+
+/* Adds x to a sum whose rounding errors gather in *rest (Neumaier). */
+static inline void KERNEL(add)(double *sum, double *rest, double x)
+{
+	double t = *sum + x;
+	*rest += (*sum < 0 ? -*sum : *sum) >= (x < 0 ? -x : x) ? (*sum - t) + x : (x - t) + *sum;
+	*sum = t;
+}
+
+static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct robust_line *line, double inverse_scale,
+                                struct robust_sums *out)
+{
+	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), b = LANES_ALL(line->slope);
+	const lanes4 scale = LANES_ALL(inverse_scale), one = LANES_ALL(1), zero = LANES_ALL(0);
+	double sum[6] = {0}, rest[6] = {0};
+	mask4 rejected = {0, 0, 0, 0};
+
+	for (size_t start = 0; start < sample->n; start += ROBUST_BLOCK) {
+		size_t m = sample->n - start < ROBUST_BLOCK ? sample->n - start : ROBUST_BLOCK;
+		const double *x = sample->x + start, *y = sample->y + start;
+		const float *excess = sample->excess + start;
+		double tail[8] = {line->centre_x, line->centre_x, line->centre_x, line->centre_x};
+		lanes4 s0 = zero, s1 = zero, s2 = zero, s3 = zero, s4 = zero, s5 = zero;
+
+		for (size_t i = 0; i < m; i += 4) {
+			lanes4 dx, dy, f;
+			mask4 present = {-1, -1, -1, -1};
+			if (m - i >= 4) {
+				dx = LANES_LOAD(x + i) - xo;
+				dy = LANES_LOAD(y + i) - c;
+				f = __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
+			} else { /* the last few: absent ones weigh nothing */
+				f = zero;
+				tail[4] = tail[5] = tail[6] = tail[7] = line->centre_y;
+				for (size_t l = 0; l < 4; l++) {
+					present[l] = l < m - i ? -1 : 0;
+					if (l < m - i) {
+						tail[l] = x[i + l];
+						tail[4 + l] = y[i + l];
+						f[l] = (double)excess[i + l];
+					}
+				}
+				dx = LANES_LOAD(tail) - xo;
+				dy = LANES_LOAD(tail + 4) - c;
+			}
+			lanes4 r = dy - b * dx, u = (r + r * f) * scale, q = one - u * u;
+			mask4 kept = (mask4)(q > zero) & present;
+			rejected += ~kept & present; /* true is -1 */
+			q = (lanes4)((mask4)q & kept);
+			lanes4 w = q * q, wx = w * dx;
+			s0 += q;
+			s1 += w;
+			s2 += wx;
+			s3 += wx * dx;
+			s4 += w * r;
+			s5 += wx * r;
+		}
+		KERNEL(add)(&sum[0], &rest[0], lanes_sum(&s0));
+		KERNEL(add)(&sum[1], &rest[1], lanes_sum(&s1));
+		KERNEL(add)(&sum[2], &rest[2], lanes_sum(&s2));
+		KERNEL(add)(&sum[3], &rest[3], lanes_sum(&s3));
+		KERNEL(add)(&sum[4], &rest[4], lanes_sum(&s4));
+		KERNEL(add)(&sum[5], &rest[5], lanes_sum(&s5));
+	}
+	out->root = sum[0] + rest[0];
+	out->w = sum[1] + rest[1];
+	out->wx = sum[2] + rest[2];
+	out->wxx = sum[3] + rest[3];
+	out->wr = sum[4] + rest[4];
+	out->wxr = sum[5] + rest[5];
+	out->rejected = (size_t)-(rejected[0] + rejected[1] + rejected[2] + rejected[3]);
+}

@@ -1,0 +1,423 @@
+/* robust.h against GSL's gsl_multifit_robust, and its own promises. */
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_multifit.h>
+
+#include "model/kernels.h"
+#include "model/robust.h"
+
+static uint64_t state;
+static double uniform(void)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return ((double)(state >> 12) + 0.5) * 0x1p-52;
+}
+static double normal(void)
+{
+	return sqrt(-2 * log(uniform())) * cos(6.283185307179586 * uniform());
+}
+
+struct oracle {
+	double intercept, slope;
+	size_t iterations;
+	int status;
+};
+
+static struct oracle gsl_fit(const double *x, const double *y, size_t n)
+{
+	gsl_matrix *design = gsl_matrix_alloc(n, 2), *cov = gsl_matrix_alloc(2, 2);
+	gsl_vector *c = gsl_vector_alloc(2);
+	gsl_vector_const_view view = gsl_vector_const_view_array(y, n);
+	gsl_multifit_robust_workspace *work = gsl_multifit_robust_alloc(gsl_multifit_robust_bisquare, n, 2);
+	gsl_error_handler_t *old = gsl_set_error_handler_off();
+	for (size_t i = 0; i < n; i++) {
+		gsl_matrix_set(design, i, 0, 1);
+		gsl_matrix_set(design, i, 1, x[i]);
+	}
+	struct oracle out;
+	out.status = gsl_multifit_robust(design, &view.vector, c, cov, work);
+	out.intercept = gsl_vector_get(c, 0);
+	out.slope = gsl_vector_get(c, 1);
+	out.iterations = gsl_multifit_robust_statistics(work).numit;
+	gsl_set_error_handler(old);
+	gsl_multifit_robust_free(work);
+	gsl_vector_free(c);
+	gsl_matrix_free(cov);
+	gsl_matrix_free(design);
+	return out;
+}
+
+static int ascending(const void *a, const void *b)
+{
+	long double x = *(const long double *)a, y = *(const long double *)b;
+	return (x > y) - (x < y);
+}
+
+/*
+ * The steps of robust.h written down once more in long double, with a sort for the median. A constant x has the
+ * leverage 1/n; the fitted value is then what counts, and it is returned as intercept with slope 0.
+ */
+static struct oracle slow_fit(const double *x, const double *y, size_t n)
+{
+	long double *f = malloc(n * sizeof *f), *w = malloc(n * sizeof *w), *v = malloc(n * sizeof *v);
+	long double mean_x = 0, mean_y = 0, sxx = 0, syy = 0, a = 0, b = 0;
+	struct oracle out = {0};
+	for (size_t i = 0; i < n; i++) {
+		mean_x += x[i] / (long double)n;
+		mean_y += y[i] / (long double)n;
+	}
+	for (size_t i = 0; i < n; i++) {
+		sxx += (x[i] - mean_x) * (x[i] - mean_x);
+		syy += (y[i] - mean_y) * (y[i] - mean_y);
+		w[i] = 1;
+	}
+	int constant = sxx <= 1e-30L * (long double)n * mean_x * mean_x;
+	for (size_t i = 0; i < n; i++) {
+		long double h = 1.0L / (long double)n + (constant ? 0 : (x[i] - mean_x) * (x[i] - mean_x) / sxx);
+		f[i] = 1 / sqrtl(1 - (h > 0.9999L ? 0.9999L : h));
+	}
+	long double least = 1e-6L * sqrtl(syy / (long double)(n - 1));
+	if (least == 0)
+		least = 1;
+	for (out.iterations = 0; out.iterations <= 100; out.iterations++) {
+		long double sw = 0, sx = 0, sy = 0, xx = 0, xy = 0, a0 = a, b0 = b;
+		for (size_t i = 0; i < n; i++) {
+			sw += w[i];
+			sx += w[i] * x[i];
+			sy += w[i] * y[i];
+		}
+		for (size_t i = 0; i < n; i++) {
+			xx += w[i] * (x[i] - sx / sw) * (x[i] - sx / sw);
+			xy += w[i] * (x[i] - sx / sw) * (y[i] - sy / sw);
+		}
+		b = constant ? 0 : xy / xx;
+		a = sy / sw - b * (sx / sw);
+		long double tolerance = sqrtl((long double)DBL_EPSILON);
+		if (out.iterations && fabsl(a - a0) <= tolerance * fmaxl(fabsl(a), fabsl(a0)) &&
+		    fabsl(b - b0) <= tolerance * fmaxl(fabsl(b), fabsl(b0)))
+			break;
+		for (size_t i = 0; i < n; i++)
+			v[i] = fabsl((y[i] - a - b * x[i]) * f[i]);
+		qsort(v, n, sizeof *v, ascending);
+		long double s = (v[1 + (n - 2) / 2] + v[1 + (n - 1) / 2]) / 2 / 0.6745L;
+		s = fmaxl(s, least);
+		for (size_t i = 0; i < n; i++) {
+			long double u = (y[i] - a - b * x[i]) * f[i] / (4.685L * s);
+			w[i] = fabsl(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
+		}
+	}
+	out.status = out.iterations > 100;
+	out.intercept = (double)a;
+	out.slope = (double)b;
+	free(f);
+	free(w);
+	free(v);
+	return out;
+}
+
+/* Both coefficients within `tolerance` of GSL's, relative to each, or to the size of the terms where a coefficient is 0. */
+static void assert_agrees(const double *x, const double *y, size_t n, double tolerance)
+{
+	struct robust_fit fit;
+	double largest_x = 0, largest_y = 0;
+	assert_int_equal(robust_fit(x, y, n, &fit, NULL), BP_OK);
+	struct oracle want = gsl_fit(x, y, n);
+	for (size_t i = 0; i < n; i++) {
+		largest_x = fmax(largest_x, fabs(x[i]));
+		largest_y = fmax(largest_y, fabs(y[i]));
+	}
+	double floor_a = 4e-15 * largest_y, floor_b = largest_x > 0 ? 1e-13 * largest_y / largest_x : 0;
+	if (fabs(fit.intercept - want.intercept) > tolerance * fabs(want.intercept) + floor_a ||
+	    fabs(fit.slope - want.slope) > tolerance * fabs(want.slope) + floor_b)
+		fail_msg("n %zu: ours %.17g %.17g (%u iterations), GSL %.17g %.17g (%zu, status %d)", n, fit.intercept, fit.slope,
+		         fit.iterations, want.intercept, want.slope, want.iterations, want.status);
+}
+
+enum { N = 4000 };
+static double xs[N], ys[N];
+
+static void make_line(double intercept, double slope, double noise)
+{
+	state = 7;
+	for (size_t i = 0; i < N; i++) {
+		xs[i] = exp(normal());
+		ys[i] = intercept + slope * xs[i] + noise * normal();
+	}
+}
+
+static void add_outliers(double share, double size)
+{
+	for (size_t i = 0; i < N; i++)
+		if (uniform() < share)
+			ys[i] += size * (1 + uniform());
+}
+
+static void scale(double fx, double fy)
+{
+	for (size_t i = 0; i < N; i++) {
+		xs[i] *= fx;
+		ys[i] *= fy;
+	}
+}
+
+static void clean_data_agrees_with_gsl(void **user)
+{
+	(void)user;
+	make_line(0.3, 1.7, 0.1);
+	assert_agrees(xs, ys, N, 1e-9);
+	make_line(0.3, 1.7, 0);
+	assert_agrees(xs, ys, N, 1e-9);
+}
+
+static void thirty_percent_outliers_agree_with_gsl(void **user)
+{
+	(void)user;
+	make_line(0.3, 1.7, 0.1);
+	add_outliers(0.3, 50);
+	assert_agrees(xs, ys, N, 1e-7);
+	make_line(-2, 0.5, 1);
+	add_outliers(0.3, 8);
+	assert_agrees(xs, ys, N, 1e-7);
+}
+
+static void nearly_half_outliers_agree_with_gsl(void **user)
+{
+	(void)user;
+	make_line(0.3, 1.7, 0.1);
+	add_outliers(0.49, 100);
+	assert_agrees(xs, ys, N, 1e-6);
+}
+
+static void tiny_and_huge_scales_agree_with_gsl(void **user)
+{
+	(void)user;
+	static const double factors[][2] = {{1e-12, 1e-12}, {1e12, 1e12}, {1, 1e-12}, {1, 1e12}, {1e-12, 1}, {1e12, 1}};
+	for (size_t k = 0; k < sizeof factors / sizeof *factors; k++) {
+		make_line(0.3, 1.7, 0.1);
+		add_outliers(0.3, 50);
+		scale(factors[k][0], factors[k][1]);
+		assert_agrees(xs, ys, N, 1e-7);
+	}
+}
+
+/*
+ * With a constant x, GSL's leverages are those of an arbitrary second singular vector (single observations lose
+ * their weight in it) and its rank test depends on rounding errors; ours are 1/n, as the design has rank 1. What
+ * must agree: the robust mean with the reference, and where GSL sees the rank, how it is split in two.
+ */
+static void a_constant_x_splits_the_robust_mean_as_gsl_does(void **user)
+{
+	(void)user;
+	static const double values[] = {1, 0.3, 1000, 1e-12, 1e12, -7, 0};
+	for (size_t k = 0; k < sizeof values / sizeof *values; k++)
+		for (size_t n = 50; n <= N; n *= 4) {
+			struct robust_fit fit;
+			make_line(0.3, 1.7, 0.1);
+			for (size_t i = 0; i < N; i++)
+				xs[i] = values[k];
+			assert_int_equal(robust_fit(xs, ys, n, &fit, NULL), BP_OK);
+			struct oracle slow = slow_fit(xs, ys, n), gsl = gsl_fit(xs, ys, n);
+			double level = fit.intercept + fit.slope * values[k];
+			assert_true(fabs(level - slow.intercept) <= 1e-9 * slow.intercept);
+			if (n > 50 || k > 1)
+				continue;
+			double share = fit.slope * values[k] / level, gsl_share = gsl.slope * values[k] / (gsl.intercept + gsl.slope * values[k]);
+			assert_true(fabs(share - gsl_share) <= 1e-6);
+			for (size_t i = 0; i < n; i++)
+				ys[i] = 3;
+			assert_agrees(xs, ys, n, 1e-6);
+		}
+}
+
+static void the_reference_in_long_double_agrees(void **user)
+{
+	(void)user;
+	for (unsigned share = 0; share < 5; share++) {
+		make_line(0.3, 1.7, 0.1);
+		add_outliers(0.1 * share, 30);
+		struct robust_fit fit;
+		assert_int_equal(robust_fit(xs, ys, N, &fit, NULL), BP_OK);
+		struct oracle slow = slow_fit(xs, ys, N);
+		assert_true(fabs(fit.intercept - slow.intercept) <= 1e-9 * fabs(slow.intercept));
+		assert_true(fabs(fit.slope - slow.slope) <= 1e-9 * fabs(slow.slope));
+		assert_int_equal(fit.iterations, slow.iterations);
+	}
+}
+
+static void a_constant_y_gives_slope_zero(void **user)
+{
+	(void)user;
+	static const double values[] = {5, 0.1, 1e-12, 1e12, 0};
+	for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+		struct robust_fit fit;
+		make_line(0, 1, 0);
+		for (size_t i = 0; i < N; i++)
+			ys[i] = values[k];
+		assert_agrees(xs, ys, N, 1e-6);
+		assert_int_equal(robust_fit(xs, ys, N, &fit, NULL), BP_OK);
+		assert_true(fit.slope == 0 && fit.intercept == values[k]);
+		assert_true(fit.converged && fit.rejected == 0);
+	}
+}
+
+static void ties_in_the_residuals_agree_with_gsl(void **user)
+{
+	(void)user;
+	/* More than half of the observations lie exactly on a line: the median residual sinks to 0. */
+	make_line(0, 1, 0);
+	for (size_t i = 0; i < N; i++) {
+		xs[i] = (double)(i % 16);
+		ys[i] = 2 + 0.5 * xs[i] + (i % 5 == 0 ? (double)(i % 7) : 0);
+	}
+	assert_agrees(xs, ys, N, 1e-6);
+	for (size_t i = 0; i < N; i++)
+		ys[i] = i % 3 == 0;
+	assert_agrees(xs, ys, N, 1e-6);
+}
+
+static void a_large_common_offset_agrees_with_gsl(void **user)
+{
+	(void)user;
+	make_line(0.3, 1.7, 0.1);
+	add_outliers(0.2, 20);
+	for (size_t i = 0; i < N; i++)
+		xs[i] += 1e5;
+	assert_agrees(xs, ys, N, 1e-6);
+}
+
+static void a_few_observations_agree_with_gsl(void **user)
+{
+	(void)user;
+	for (size_t n = 2; n <= 12; n++)
+		for (unsigned seed = 1; seed <= 20; seed++) {
+			state = seed * 1000 + n;
+			for (size_t i = 0; i < n; i++) {
+				xs[i] = uniform();
+				ys[i] = 1 + 2 * xs[i] + 0.1 * normal();
+			}
+			/* With so few, some samples never settle; GSL's answer counts where it converged. */
+			if (gsl_fit(xs, ys, n).status == GSL_SUCCESS)
+				assert_agrees(xs, ys, n, 1e-6);
+		}
+}
+
+static void one_observation_is_its_own_intercept(void **user)
+{
+	(void)user;
+	double x = 3, y = 4;
+	struct robust_fit fit;
+	assert_int_equal(robust_fit(&x, &y, 1, &fit, NULL), BP_OK);
+	assert_true(fit.intercept == 4 && fit.slope == 0 && fit.converged);
+	assert_int_equal(robust_fit(&x, &y, 0, &fit, NULL), BP_ERROR_ARGUMENT);
+}
+
+static void the_ends_of_the_range_of_double_are_fitted(void **user)
+{
+	(void)user;
+	static const double factors[][2] = {{1e300, 1e300}, {1e-300, 1e-300}, {1e-300, 1}, {1, 1e300}};
+	make_line(0.3, 1.7, 0.1);
+	add_outliers(0.3, 50);
+	struct robust_fit plain;
+	assert_int_equal(robust_fit(xs, ys, N, &plain, NULL), BP_OK);
+	for (size_t k = 0; k < sizeof factors / sizeof *factors; k++) {
+		struct robust_fit fit;
+		make_line(0.3, 1.7, 0.1);
+		add_outliers(0.3, 50);
+		scale(factors[k][0], factors[k][1]);
+		assert_int_equal(robust_fit(xs, ys, N, &fit, NULL), BP_OK);
+		assert_true(fabs(fit.intercept / factors[k][1] - plain.intercept) < 1e-9);
+		assert_true(fabs(fit.slope * factors[k][0] / factors[k][1] - plain.slope) < 1e-9);
+		assert_int_equal(fit.rejected, plain.rejected);
+	}
+}
+
+/* The count of zero weights, worked out from the answer. */
+static void the_rejected_share_is_what_the_weights_say(void **user)
+{
+	(void)user;
+	make_line(0, 1, 0.1);
+	add_outliers(0.3, 1000);
+	struct robust_fit fit;
+	size_t far = 0;
+	assert_int_equal(robust_fit(xs, ys, N, &fit, NULL), BP_OK);
+	for (size_t i = 0; i < N; i++)
+		far += fabs(ys[i] - fit.intercept - fit.slope * xs[i]) > 100;
+	assert_true(fit.rejected >= far && fit.rejected < far + N / 100);
+	assert_true(fit.converged && fit.iterations > 1 && fit.iterations < 100);
+}
+
+static void a_large_sample_takes_the_bracketed_median_and_still_agrees_with_gsl(void **user)
+{
+	(void)user;
+	enum { MANY = 60000 };
+	double *x = malloc(MANY * sizeof *x), *y = malloc(MANY * sizeof *y);
+	state = 99;
+	for (size_t i = 0; i < MANY; i++) {
+		x[i] = exp(2 * normal());
+		y[i] = 0.01 + 1.2 * x[i] * (1 + 0.1 * normal()) + 0.001 * normal();
+	}
+	assert_agrees(x, y, MANY, 1e-6);
+	for (size_t i = 0; i < MANY; i++) /* many ties, and few different residuals */
+		y[i] = floor(4 * uniform()) + (double)(i % 2) * x[i];
+	if (gsl_fit(x, y, MANY).status == GSL_SUCCESS)
+		assert_agrees(x, y, MANY, 1e-6);
+	free(x);
+	free(y);
+}
+
+static void both_kernel_tables_give_the_same_bits(void **user)
+{
+	(void)user;
+	if (!kernels_avx2_usable())
+		skip();
+	make_line(0.3, 1.7, 0.1);
+	add_outliers(0.3, 50);
+	static float excess[N];
+	static double a[N + 1], b[N + 1];
+	for (size_t i = 0; i < N; i++)
+		excess[i] = (float)(1e-3 * uniform());
+	for (size_t n = N - 19; n <= N; n++) {
+		const struct robust_sample sample = {xs, ys, excess, n};
+		const struct robust_line line = {1.5, 2.9, 1.6};
+		struct robust_sums p, q;
+		size_t below_a, below_b;
+		kernels_plain.robust_sums(&sample, &line, 0.7, &p);
+		kernels_avx2.robust_sums(&sample, &line, 0.7, &q);
+		assert_memory_equal(&p, &q, sizeof p);
+		size_t count_a = kernels_plain.robust_scale(&sample, &line, 0.1, 0.2, a, &below_a);
+		size_t count_b = kernels_avx2.robust_scale(&sample, &line, 0.1, 0.2, b, &below_b);
+		assert_true(count_a == count_b && below_a == below_b);
+		assert_memory_equal(a, b, count_a * sizeof *a);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(clean_data_agrees_with_gsl),
+		cmocka_unit_test(thirty_percent_outliers_agree_with_gsl),
+		cmocka_unit_test(nearly_half_outliers_agree_with_gsl),
+		cmocka_unit_test(tiny_and_huge_scales_agree_with_gsl),
+		cmocka_unit_test(a_constant_x_splits_the_robust_mean_as_gsl_does),
+		cmocka_unit_test(the_reference_in_long_double_agrees),
+		cmocka_unit_test(a_constant_y_gives_slope_zero),
+		cmocka_unit_test(ties_in_the_residuals_agree_with_gsl),
+		cmocka_unit_test(a_large_common_offset_agrees_with_gsl),
+		cmocka_unit_test(a_few_observations_agree_with_gsl),
+		cmocka_unit_test(one_observation_is_its_own_intercept),
+		cmocka_unit_test(the_ends_of_the_range_of_double_are_fitted),
+		cmocka_unit_test(the_rejected_share_is_what_the_weights_say),
+		cmocka_unit_test(a_large_sample_takes_the_bracketed_median_and_still_agrees_with_gsl),
+		cmocka_unit_test(both_kernel_tables_give_the_same_bits),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
