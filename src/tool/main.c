@@ -16,7 +16,8 @@
 #include <unistd.h>
 
 /* A new command is one cmd_NAME.c and one line here, in the order `help` shows them. */
-#define COMMANDS(X)
+#define COMMANDS(X) \
+	X(list)
 
 #define DECLARE(name) extern const struct command command_##name;
 COMMANDS(DECLARE)

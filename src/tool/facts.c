@@ -1,0 +1,113 @@
+#include "facts.h"
+
+#include <string.h>
+
+const char *const CHANNEL_NAMES[3] = {"red", "green", "blue"};
+const char *const PAIR_NAMES[3] = {"c_hd", "c_hphi", "c_dphi|h"};
+
+const char *profile_name(enum profile profile)
+{
+	return profile == PROFILE_PAPER ? "paper" : profile == PROFILE_DEFAULT ? "default" : "unknown";
+}
+
+bool profile_parse(const char *text, enum profile *out)
+{
+	if (strcmp(text, "paper") != 0 && strcmp(text, "default") != 0)
+		return false;
+	*out = text[0] == 'p' ? PROFILE_PAPER : PROFILE_DEFAULT;
+	return true;
+}
+
+const struct fidelity *head_fidelity(const struct record_head *head)
+{
+	return &head->layers[head->layer_count > 0 ? head->layer_count - 1 : 0].fidelity;
+}
+
+static void fidelity_members(struct json *json, const struct fidelity *fidelity)
+{
+	json_number(json, "log_rmse", fidelity->log_rmse);
+	json_number(json, "cube_root_rmse", fidelity->cube_root_rmse);
+	json_number(json, "largest_relative", fidelity->largest_relative);
+}
+
+void facts_brief(struct json *json, const struct record_head *head)
+{
+	json_object(json, "errors");
+	fidelity_members(json, head_fidelity(head));
+	json_close(json);
+
+	json_object(json, "parameters");
+	for (int c = 0; c < 3; c++) {
+		const struct colour_fit *fit = &head->colour[c];
+		json_object(json, CHANNEL_NAMES[c]);
+		json_number(json, "diffuse", fit->diffuse);
+		json_number(json, "specular", fit->specular);
+		json_integer(json, "iterations", fit->iterations);
+		json_bool(json, "converged", fit->converged);
+		json_number(json, "rejected", fit->rejected);
+		json_close(json);
+	}
+	json_close(json);
+
+	json_array(json, "left_out");
+	for (int pair = 0; pair < 3; pair++)
+		if (head->left_out >> pair & 1)
+			json_string(json, NULL, PAIR_NAMES[pair]);
+	json_close(json);
+}
+
+static void layers_member(struct json *json, const struct record_head *head)
+{
+	json_array(json, "layers");
+	for (uint32_t i = 0; i < head->layer_count; i++) {
+		json_object(json, NULL);
+		json_integer(json, "bytes", head->layers[i].bytes);
+		fidelity_members(json, &head->layers[i].fidelity);
+		json_close(json);
+	}
+	json_close(json);
+
+	json_array(json, "sections");
+	for (uint32_t i = 0; i < head->section_count; i++) {
+		const struct record_section *section = &head->sections[i];
+		json_object(json, NULL);
+		json_integer(json, "type", section->type);
+		json_integer(json, "codec", section->codec);
+		json_integer(json, "version", section->version);
+		json_integer(json, "layer", section->layer);
+		json_integer(json, "offset", section->offset);
+		json_integer(json, "bytes", section->bytes);
+		json_number(json, "error", section->error);
+		json_close(json);
+	}
+	json_close(json);
+}
+
+void facts_full(struct json *json, const struct record_head *head)
+{
+	json_integer(json, "bytes", head->record_bytes);
+	json_string(json, "profile", profile_name(head->profile));
+	json_integer(json, "codec_version", head->codec_version);
+
+	json_object(json, "source");
+	json_integer(json, "bytes", head->source.bytes);
+	json_hex(json, "sha256", head->source.sha256, SHA256_BYTES);
+	json_integer(json, "nonfinite_cells", head->source.nonfinite_count);
+	json_close(json);
+
+	json_object(json, "lattice");
+	json_integer(json, "theta_h", head->dims.theta_h);
+	json_integer(json, "theta_d", head->dims.theta_d);
+	json_integer(json, "phi_d", head->dims.phi_d);
+	json_number(json, "horizon_limit", head->horizon_limit);
+	json_close(json);
+
+	json_object(json, "options");
+	json_integer(json, "budget_bytes", head->options.budget_bytes);
+	json_number(json, "max_error", head->options.max_error);
+	json_integer(json, "effort", (uint64_t)head->options.effort);
+	json_close(json);
+
+	facts_brief(json, head);
+	layers_member(json, head);
+}

@@ -1,0 +1,150 @@
+#include "json.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+
+/* The length of the well-formed UTF-8 sequence at text (Unicode 15, table 3-7), or 0. */
+static int utf8_length(const unsigned char *text)
+{
+	unsigned char a = text[0], b;
+	if (a < 0x80)
+		return 1;
+	int length = a >= 0xc2 && a <= 0xdf ? 2 : (a & 0xf0) == 0xe0 ? 3 : a >= 0xf0 && a <= 0xf4 ? 4 : 0;
+	if (!length)
+		return 0;
+	b = text[1];
+	unsigned least = a == 0xe0 ? 0xa0 : a == 0xf0 ? 0x90 : 0x80;
+	unsigned most = a == 0xed ? 0x9f : a == 0xf4 ? 0x8f : 0xbf;
+	if (b < least || b > most)
+		return 0;
+	for (int i = 2; i < length; i++)
+		if ((text[i] & 0xc0) != 0x80) /* also ends at the NUL */
+			return 0;
+	return length;
+}
+
+static void text_print(FILE *out, const char *string)
+{
+	const unsigned char *text = (const unsigned char *)string;
+	putc('"', out);
+	while (*text) {
+		int length = utf8_length(text);
+		if (!length) {
+			fputs("\\ufffd", out);
+			length = 1;
+		} else if (*text == '"' || *text == '\\') {
+			fprintf(out, "\\%c", *text);
+		} else if (*text < 0x20 || *text == 0x7f) {
+			fprintf(out, "\\u%04x", *text);
+		} else {
+			fwrite(text, 1, (size_t)length, out);
+		}
+		text += length;
+	}
+	putc('"', out);
+}
+
+static void line_indent(struct json *json)
+{
+	if (!json->indent)
+		return;
+	putc('\n', json->out);
+	for (int i = 0; i < json->depth; i++)
+		fputs("  ", json->out);
+}
+
+static void member_begin(struct json *json, const char *key)
+{
+	if (json->depth > 0) {
+		if (json->level[json->depth - 1].filled)
+			fputs(json->indent ? "," : ", ", json->out);
+		json->level[json->depth - 1].filled = true;
+		line_indent(json);
+	}
+	if (key) {
+		text_print(json->out, key);
+		fputs(": ", json->out);
+	}
+}
+
+static void level_open(struct json *json, const char *key, char open, char close)
+{
+	assert(json->depth < JSON_DEPTH_MAX);
+	member_begin(json, key);
+	putc(open, json->out);
+	json->level[json->depth].close = close;
+	json->level[json->depth++].filled = false;
+}
+
+struct json json_begin(FILE *out, bool indent)
+{
+	return (struct json){.out = out, .indent = indent};
+}
+
+void json_finish(struct json *json)
+{
+	assert(json->depth == 0);
+	putc('\n', json->out);
+}
+
+void json_object(struct json *json, const char *key)
+{
+	level_open(json, key, '{', '}');
+}
+
+void json_array(struct json *json, const char *key)
+{
+	level_open(json, key, '[', ']');
+}
+
+void json_close(struct json *json)
+{
+	assert(json->depth > 0);
+	json->depth--;
+	if (json->level[json->depth].filled)
+		line_indent(json);
+	putc(json->level[json->depth].close, json->out);
+}
+
+void json_string(struct json *json, const char *key, const char *text)
+{
+	member_begin(json, key);
+	text_print(json->out, text);
+}
+
+void json_integer(struct json *json, const char *key, uint64_t value)
+{
+	member_begin(json, key);
+	fprintf(json->out, "%" PRIu64, value);
+}
+
+void json_number(struct json *json, const char *key, double value)
+{
+	member_begin(json, key);
+	if (isfinite(value))
+		fprintf(json->out, "%.17g", value);
+	else
+		fputs("null", json->out);
+}
+
+void json_bool(struct json *json, const char *key, bool value)
+{
+	member_begin(json, key);
+	fputs(value ? "true" : "false", json->out);
+}
+
+void json_null(struct json *json, const char *key)
+{
+	member_begin(json, key);
+	fputs("null", json->out);
+}
+
+void json_hex(struct json *json, const char *key, const uint8_t *bytes, size_t count)
+{
+	member_begin(json, key);
+	putc('"', json->out);
+	for (size_t i = 0; i < count; i++)
+		fprintf(json->out, "%02x", bytes[i]);
+	putc('"', json->out);
+}

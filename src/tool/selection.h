@@ -1,0 +1,38 @@
+/*
+ * selection.h: which materials of an archive a command is about.
+ */
+#ifndef TOOL_SELECTION_H
+#define TOOL_SELECTION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "../archive/reader.h"
+
+/* An open archive and the materials that were asked for. */
+struct selection {
+	const char *path;
+	bp_archive *archive;
+	bool all;          /* every material, in name order */
+	uint64_t *index;   /* otherwise these, in the order they were named */
+	uint64_t count;
+	bool incomplete;   /* some name was not there; that has been reported */
+	struct index_page leaf; /* of the walk over all */
+};
+
+/*
+ * Opens the archive and finds the names; no names: all materials. Reports what goes wrong. False
+ * when the archive cannot be used at all. Names that are not there are reported with the nearest
+ * spelling and left out.
+ */
+bool selection_open(struct selection *selection, const char *path, char **names, int name_count);
+void selection_close(struct selection *selection);
+
+/* The index entry of the n-th selected material. A walk over all reads every index page once. */
+bp_status selection_entry(struct selection *selection, uint64_t n, struct index_entry *entry, bp_error *error);
+
+/* Edits (insert, delete, replace a byte) that lead from a to b; at most `most` + 1 is counted. */
+size_t name_distance(const char *a, const char *b, size_t most);
+
+#endif
