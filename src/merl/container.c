@@ -1,0 +1,261 @@
+#include "container.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <locale.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "../error.h"
+
+enum { BLOCK_BYTES = 1 << 18, FAILURES_MAX = 1000 };
+
+struct container {
+	struct archive *archive;
+	struct archive_entry *entry; /* the current one; libarchive's */
+	int fd;
+	char *raw_name;    /* of the only member of a compressed file that is no archive; else NULL */
+	char *path;        /* of the current member, or NULL */
+	uint32_t next;     /* ordinal of the next entry */
+	bool current;      /* an entry has been reached, and none of its bytes read */
+	bool pending;      /* the first entry, read while opening */
+	bool finished;
+	unsigned failures; /* entries that could not be read; a limit keeps hostile files from going on for ever */
+	size_t ignored;
+	locale_t locale;
+};
+
+/* libarchive converts names to the thread's character set: without UTF-8 it would lose them in a C locale. */
+static locale_t locale_enter(const struct container *container)
+{
+	return container->locale ? uselocale(container->locale) : (locale_t)0;
+}
+
+static void locale_leave(locale_t before)
+{
+	if (before)
+		uselocale(before);
+}
+
+static const char *reason_of(struct archive *archive)
+{
+	const char *text = archive_error_string(archive);
+	return text && *text ? text : "unknown format or damaged";
+}
+
+static bp_status refuse(struct container *container, const char *what, bp_error *error)
+{
+	struct archive *archive = container->archive;
+	if (archive_errno(archive) == ENOMEM)
+		return error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "out of memory");
+	if (container->path)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "member %s: %s: %s", container->path, what, reason_of(archive));
+	return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: %s", what, reason_of(archive));
+}
+
+/* x.binary.gz -> x.binary: what a compressed file that is no archive holds. */
+static char *raw_member_name(const char *path)
+{
+	const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+	return dot && dot != base ? strndup(base, (size_t)(dot - base)) : strdup(base);
+}
+
+static bool formats_choose(struct archive *archive, enum container_order order)
+{
+	if (archive_read_support_format_tar(archive) != ARCHIVE_OK)
+		return false;
+	if (order == CONTAINER_INDEXED)
+		return archive_read_support_format_zip_seekable(archive) == ARCHIVE_OK;
+	/* A filter that needs an outside program answers ARCHIVE_WARN; it is not wanted, and not asked for. */
+	archive_read_support_filter_gzip(archive);
+	archive_read_support_filter_bzip2(archive);
+	archive_read_support_filter_xz(archive);
+	archive_read_support_filter_lzma(archive);
+	archive_read_support_filter_zstd(archive);
+	archive_read_support_filter_compress(archive);
+	return archive_read_support_format_zip(archive) == ARCHIVE_OK && archive_read_support_format_raw(archive) == ARCHIVE_OK;
+}
+
+/* The next entry of any kind; *more = false at the end. After an error the next call goes on, unless it was fatal. */
+static bp_status entry_next(struct container *container, bool *more, bp_error *error)
+{
+	int answer;
+	*more = false;
+	container->current = false;
+	free(container->path);
+	container->path = NULL;
+	if (container->finished)
+		return BP_OK;
+	if (container->pending) {
+		container->pending = false;
+		answer = ARCHIVE_OK;
+	} else {
+		do
+			answer = archive_read_next_header(container->archive, &container->entry);
+		while (answer == ARCHIVE_RETRY);
+	}
+	container->failures += answer == ARCHIVE_FAILED;
+	if (answer == ARCHIVE_EOF || answer == ARCHIVE_FATAL || container->failures > FAILURES_MAX)
+		container->finished = true;
+	if (answer == ARCHIVE_EOF)
+		return BP_OK;
+	if (answer != ARCHIVE_OK && answer != ARCHIVE_WARN) {
+		container->next += answer != ARCHIVE_FATAL;
+		return refuse(container, "damaged", error);
+	}
+	container->next++;
+	container->current = *more = true;
+	const char *stored = archive_entry_pathname_utf8(container->entry);
+	if (!stored)
+		stored = archive_entry_pathname(container->entry); /* a tar's bytes that are not UTF-8 */
+	container->path = strdup(container->raw_name ? container->raw_name : stored ? stored : "");
+	return container->path ? BP_OK : error_memory(error, 256);
+}
+
+bp_status container_open(const char *path, enum container_order order, struct container **out, bp_error *error)
+{
+	struct stat about;
+	bp_status status;
+	struct container *container = calloc(1, sizeof *container);
+	if (!container)
+		return error_memory(error, sizeof *container);
+	container->fd = -1;
+	container->locale = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0);
+	container->archive = archive_read_new();
+	container->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a FIFO must not make it wait */
+	if (container->fd < 0 || fstat(container->fd, &about) != 0) {
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
+		goto out;
+	}
+	if (!S_ISREG(about.st_mode)) {
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "not a regular file");
+		goto out;
+	}
+	if (!container->archive || !formats_choose(container->archive, order)) {
+		status = error_memory(error, BLOCK_BYTES);
+		goto out;
+	}
+	const locale_t before = locale_enter(container);
+	int answer = archive_read_open_fd(container->archive, container->fd, BLOCK_BYTES);
+	if (answer == ARCHIVE_OK)
+		do
+			answer = archive_read_next_header(container->archive, &container->entry);
+		while (answer == ARCHIVE_RETRY);
+	const bool raw = (archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_RAW;
+	const int filters = archive_filter_count(container->archive); /* one of them is the file itself */
+	status = BP_OK;
+	if (answer == ARCHIVE_EOF)
+		container->finished = true;
+	else if (answer == ARCHIVE_OK || answer == ARCHIVE_WARN)
+		container->pending = true;
+	else
+		status = refuse(container, "not readable as tar or zip", error);
+	locale_leave(before);
+	/* Any bytes at all pass for "raw" and for an empty tar: only a compressed file may be the one, and zeros the other. */
+	if (status != BP_OK && order == CONTAINER_INDEXED)
+		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "neither a plain tar nor a zip with a directory");
+	else if (status == BP_OK && raw && filters < 2)
+		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "neither tar nor zip");
+	if (status == BP_OK && raw && !(container->raw_name = raw_member_name(path)))
+		status = error_memory(error, 256);
+out:
+	if (status == BP_OK)
+		*out = container;
+	else
+		container_close(container);
+	return status;
+}
+
+static bool entry_counts(struct container *container)
+{
+	static const char suffix[] = ".binary";
+	const char *slash = strrchr(container->path, '/'), *base = slash ? slash + 1 : container->path;
+	const size_t bytes = strlen(base);
+	const bool regular = container->raw_name || archive_entry_filetype(container->entry) == AE_IFREG;
+	const bool counts = regular && base[0] != '.' && bytes > sizeof suffix - 1 &&
+	                    strcasecmp(base + bytes - (sizeof suffix - 1), suffix) == 0;
+	if (!counts && archive_entry_filetype(container->entry) != AE_IFDIR)
+		container->ignored++;
+	return counts;
+}
+
+bp_status container_next(struct container *container, struct container_member *member, bool *more, bp_error *error)
+{
+	const locale_t before = locale_enter(container);
+	bp_status status;
+	do
+		status = entry_next(container, more, error);
+	while (status == BP_OK && *more && !entry_counts(container));
+	locale_leave(before);
+	if (status != BP_OK || !*more)
+		return status;
+	struct archive_entry *entry = container->entry;
+	if (archive_entry_is_data_encrypted(entry) || archive_entry_is_metadata_encrypted(entry))
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "member %s: encrypted; unpack it with its password first", container->path);
+	if (!container->raw_name && archive_entry_hardlink(entry))
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "member %s: a hard link, whose bytes are stored elsewhere in the archive",
+		                 container->path);
+	member->path = container->path;
+	member->ordinal = container->next - 1;
+	member->bytes = archive_entry_size_is_set(entry) ? (uint64_t)archive_entry_size(entry) : UINT64_MAX;
+	return BP_OK;
+}
+
+bool container_ahead(const struct container *container, uint32_t ordinal)
+{
+	return ordinal >= container->next || (container->current && ordinal == container->next - 1);
+}
+
+bp_status container_seek(struct container *container, uint32_t ordinal, bp_error *error)
+{
+	bp_status status = BP_OK;
+	bool more = container->current;
+	if (!container_ahead(container, ordinal))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "member %u lies behind", ordinal);
+	const locale_t before = locale_enter(container);
+	while (container->next <= ordinal && !container->finished)
+		status = entry_next(container, &more, error); /* one bad entry on the way does not bar the others */
+	locale_leave(before);
+	if (container->next <= ordinal && status == BP_OK)
+		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "the container ends before member %u; was it replaced?", ordinal);
+	return status;
+}
+
+bp_status container_read(void *user, void *bytes, size_t capacity, size_t *read, bp_error *error)
+{
+	struct container *container = user;
+	la_ssize_t count;
+	container->current = false;
+	do
+		count = archive_read_data(container->archive, bytes, capacity);
+	while (count == ARCHIVE_RETRY);
+	if (count < 0)
+		return refuse(container, "damaged", error);
+	*read = (size_t)count;
+	return BP_OK;
+}
+
+size_t container_ignored(const struct container *container)
+{
+	return container->ignored;
+}
+
+void container_close(struct container *container)
+{
+	if (!container)
+		return;
+	if (container->archive)
+		archive_read_free(container->archive);
+	if (container->fd >= 0)
+		close(container->fd);
+	if (container->locale)
+		freelocale(container->locale);
+	free(container->raw_name);
+	free(container->path);
+	free(container);
+}

@@ -1,0 +1,88 @@
+/*
+ * source.h: what `build` is given -> materials: MERL files, folders searched to the bottom,
+ * tars and zips. Part of the tool, not of the library.
+ *
+ * What counts. A file given by name is a MERL file or a container by its content, whatever it
+ * is called. In a folder, *.binary are MERL files, and *.zip, *.tar, *.tar.gz (.bz2 .xz .lzma
+ * .zst .Z), *.tgz, *.tbz, *.tbz2, *.txz, *.tzst, and *.binary.gz and so on are containers; other and hidden
+ * files (".x") are passed over and counted. A material's name is the file's stem: the last part
+ * of its path without the suffix. Links to files and folders are followed; a folder is searched once.
+ *
+ * Two kinds of materials. An *item* can be read by any worker on its own: a file, or a member of a
+ * container in which passing over others is cheap. A *stream* is a container that has to be read
+ * from beginning to end (a compressed tar): its members turn up while it is read, one after another.
+ *
+ *     source_scan -> items (sorted by name), streams
+ *     source_item_read: item -> lattice          container_open, source_stream_next, container_read
+ */
+#ifndef MERL_SOURCE_H
+#define MERL_SOURCE_H
+
+#include "container.h"
+
+enum source_notice {
+	SOURCE_SKIPPED, /* not a file at all, a dangling link, an unreadable folder: a warning */
+	SOURCE_DAMAGED  /* a container that cannot be read (further): counts as a failed input */
+};
+
+struct source_options {
+	/* Told what is left out, and why; may be NULL. `reason` is one line without the path. */
+	void (*notice)(void *user, enum source_notice kind, const char *path, const char *reason);
+	/* Whether a material of that name is asked for (a manifest); NULL: all are. */
+	bool (*wanted)(void *user, const char *name);
+	void *user;
+};
+
+struct source_item {
+	char *name;
+	char *path;       /* the file, or the container */
+	char *member;     /* path inside the container, or NULL for a plain file */
+	uint32_t ordinal; /* of the member in its container */
+	uint64_t bytes;   /* of the MERL file; UINT64_MAX where unknown */
+};
+
+struct source_list {
+	struct source_item *items; /* in ascending byte order of names */
+	size_t item_count;
+	char **streams;            /* paths, in the order they were found */
+	size_t stream_count;
+	size_t ignored_count;      /* files that are neither MERL files nor containers by their name */
+	size_t unwanted_count;     /* materials that options->wanted turned down */
+	size_t skipped_count, damaged_count; /* notices of each kind */
+	struct source_options options;
+	void *names;               /* who has which name; source_claim */
+};
+
+/*
+ * Lists what the inputs hold; reads no table. Refuses (nothing to free then) an input that is not
+ * there (BP_ERROR_IO), two materials of one name, naming both paths, and an illegal name
+ * (BP_ERROR_ARGUMENT). An empty result is no error here. Free with source_list_free.
+ */
+bp_status source_scan(const char *const *inputs, size_t count, const struct source_options *options, struct source_list *out,
+                      bp_error *error);
+void source_list_free(struct source_list *list);
+
+/*
+ * The next wanted material of a stream that the caller opened (CONTAINER_SEQUENTIAL): *out belongs
+ * to the caller (source_item_clear); read it with container_read. *more = false at the end.
+ * BP_ERROR_ARGUMENT: an illegal or a second name: the build must stop. Other errors concern one
+ * member, as in container_next. Messages name the member.
+ */
+bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
+                             bool *more, bp_error *error);
+void source_item_clear(struct source_item *item);
+
+/*
+ * Reads one item. The cursor keeps a container open between calls: start with {0}, and
+ * source_cursor_close it in the end. Each worker has its own; members in ascending order of their
+ * container are quickest. Messages do not repeat item->path.
+ */
+struct source_cursor {
+	struct container *container;
+	char *path;
+};
+bp_status source_item_read(const struct source_item *item, struct source_cursor *cursor, merl_seen_fn *seen, void *seen_user,
+                           struct lattice *out, bp_error *error);
+void source_cursor_close(struct source_cursor *cursor);
+
+#endif

@@ -1,0 +1,90 @@
+#include "source_kind.h"
+
+#include <fcntl.h>
+#include <stdbool.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+static bool ends_with(const char *text, const char *suffix)
+{
+	const size_t text_bytes = strlen(text), suffix_bytes = strlen(suffix);
+	return text_bytes > suffix_bytes && strcasecmp(text + text_bytes - suffix_bytes, suffix) == 0;
+}
+
+static const char *const COMPRESSIONS[] = {".gz", ".bz2", ".xz", ".lzma", ".zst", ".Z", NULL};
+static const char *const ARCHIVES[] = {".zip", ".tar", ".tgz", ".tbz", ".tbz2", ".txz", ".tzst", NULL};
+
+static const char *suffix_among(const char *name, const char *const *suffixes)
+{
+	while (*suffixes && !ends_with(name, *suffixes))
+		suffixes++;
+	return *suffixes;
+}
+
+static const char *base_name(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
+enum source_kind source_kind_by_name(const char *path)
+{
+	const char *name = base_name(path);
+	if (name[0] == '.')
+		return SOURCE_KIND_OTHER;
+	if (ends_with(name, ".binary"))
+		return SOURCE_KIND_MERL;
+	if (suffix_among(name, ARCHIVES))
+		return SOURCE_KIND_CONTAINER;
+	const char *compression = suffix_among(name, COMPRESSIONS);
+	if (!compression)
+		return SOURCE_KIND_OTHER;
+	char inner[SOURCE_STEM_BYTES];
+	const size_t bytes = strlen(name) - strlen(compression);
+	if (bytes >= sizeof inner)
+		return SOURCE_KIND_OTHER;
+	memcpy(inner, name, bytes);
+	inner[bytes] = '\0';
+	return ends_with(inner, ".binary") || ends_with(inner, ".tar") ? SOURCE_KIND_CONTAINER : SOURCE_KIND_OTHER;
+}
+
+enum source_kind source_kind_by_content(const char *path)
+{
+	static const struct { const char *bytes; size_t count, offset; } MAGIC[] = {
+		{"PK\3\4", 4, 0}, {"PK\5\6", 4, 0}, {"\x1f\x8b", 2, 0}, {"\x1f\x9d", 2, 0}, {"BZh", 3, 0}, {"\xfd" "7zXZ", 5, 0},
+		{"\x28\xb5\x2f\xfd", 4, 0}, {"ustar", 5, 257}, {"\x5d\0\0", 3, 0},
+	};
+	static const unsigned char MERL[12] = {90, 0, 0, 0, 90, 0, 0, 0, 180, 0, 0, 0};
+	char head[512] = {0};
+	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	if (fd >= 0) {
+		if (read(fd, head, sizeof head) < 0)
+			head[0] = '\0';
+		close(fd);
+	}
+	if (memcmp(head, MERL, sizeof MERL) == 0)
+		return SOURCE_KIND_MERL;
+	for (size_t n = 0; n < sizeof MAGIC / sizeof *MAGIC; n++)
+		if (memcmp(head + MAGIC[n].offset, MAGIC[n].bytes, MAGIC[n].count) == 0)
+			return SOURCE_KIND_CONTAINER;
+	return source_kind_by_name(path) == SOURCE_KIND_CONTAINER ? SOURCE_KIND_CONTAINER : SOURCE_KIND_MERL;
+}
+
+void source_stem(const char *path, char name[SOURCE_STEM_BYTES])
+{
+	const char *base = base_name(path);
+	size_t bytes = strlen(base);
+	const char *compression = suffix_among(base, COMPRESSIONS);
+	if (compression)
+		bytes -= strlen(compression);
+	size_t dot = bytes;
+	while (dot > 0 && base[dot - 1] != '.')
+		dot--;
+	if (dot > 1) /* x.binary, not .binary */
+		bytes = dot - 1;
+	if (bytes >= SOURCE_STEM_BYTES)
+		bytes = SOURCE_STEM_BYTES - 1;
+	memcpy(name, base, bytes);
+	name[bytes] = '\0';
+}

@@ -1,0 +1,22 @@
+/*
+ * source_kind.h: what a file is taken for, and what its material is called. Part of the tool.
+ */
+#ifndef MERL_SOURCE_KIND_H
+#define MERL_SOURCE_KIND_H
+
+enum source_kind { SOURCE_KIND_OTHER, SOURCE_KIND_MERL, SOURCE_KIND_CONTAINER };
+enum { SOURCE_STEM_BYTES = 512 };
+
+/* By the path's last part alone (for files found in folders); hidden files are SOURCE_KIND_OTHER. */
+enum source_kind source_kind_by_name(const char *path);
+
+/*
+ * By the first bytes of a regular file that the user named. What is neither is taken for a MERL
+ * file, whose reader then says what is wrong; a container's suffix decides where the bytes do not.
+ */
+enum source_kind source_kind_by_content(const char *path);
+
+/* The material's name: the last part of the path without its suffix (two for x.binary.gz); overlong ones are cut, and are illegal still. */
+void source_stem(const char *path, char name[SOURCE_STEM_BYTES]);
+
+#endif
