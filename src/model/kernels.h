@@ -40,6 +40,13 @@ struct robust_sums {
 	size_t rejected; /* observations of weight 0 */
 };
 
+/* One level of the pyramid of fill.h. */
+struct fill_level {
+	uint32_t rows, columns;
+	float *value;
+	uint8_t *valid;
+};
+
 struct kernels {
 	/*
 	 * Adds the n cells of one channel of one theta_h slice to *sums: b measured, unit * e decoded, in 1/sr;
@@ -57,6 +64,12 @@ struct kernels {
 	/* The weighted sums with u = (y - line) (1 + excess) inverse_scale. Blocks of 512 in four lanes, blocks compensated. */
 	void (*robust_sums)(const struct robust_sample *sample, const struct robust_line *line, double inverse_scale,
 	                    struct robust_sums *out);
+
+	/* The steps of fill.h; scratch holds two rows and four cells. */
+	size_t (*fill_halve)(const struct fill_level *fine, const struct fill_level *coarse);
+	void (*fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows, int wrap_columns,
+	                         float *scratch);
+	void (*fill_smooth)(const struct fill_level *level, int wrap_rows, int wrap_columns, unsigned sweeps, float *scratch);
 };
 
 /* The table for this processor. Thread-safe; never NULL. */

@@ -3,10 +3,14 @@
 #include "vector.h"
 
 #include "fidelity.inc.h"
+#include "fill.inc.h"
 #include "robust.inc.h"
 
 const struct kernels KERNEL(kernels) = {
 	.fidelity_slice = KERNEL(fidelity_slice),
+	.fill_halve = KERNEL(fill_halve),
+	.fill_interpolate = KERNEL(fill_interpolate),
+	.fill_smooth = KERNEL(fill_smooth),
 	.robust_scale = KERNEL(robust_scale),
 	.robust_sums = KERNEL(robust_sums),
 };
