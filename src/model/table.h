@@ -1,0 +1,70 @@
+/*
+ * table.h: the inside of struct table, shared by the builders and the evaluation kernels.
+ */
+#ifndef MODEL_TABLE_H
+#define MODEL_TABLE_H
+
+#include "direction.h"
+#include "evaluate.h"
+
+/* The kernels of one form and channel count, for one instruction set. */
+struct table_kernels {
+	void (*evaluate)(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
+	void (*nearest)(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
+	void (*batch)(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);
+};
+
+struct table {
+	struct table_kernels kernels;
+	struct lattice_scale scale;
+	struct lattice_dims dims;
+	enum table_form form;
+	int channels;
+	float unit;   /* value = unit * stored, 1/sr; finite */
+	uint32_t row; /* expanded: uint16_t in a row of phi_d; compact: bytes in one */
+
+	/* compact only */
+	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between ratio codes */
+	float half_reciprocal;
+	float ratio_base[2], ratio_step[2]; /* log2(R/G), log2(B/G) of code 0, and from code to code */
+
+	uint8_t *store; /* the cells, then TABLE_SLACK_BYTES that may be read and mean nothing */
+	size_t store_bytes;
+};
+
+enum { TABLE_SLACK_BYTES = 32 };
+
+/* [0]: one channel, [1]: RGB. */
+extern const struct table_kernels table_expanded_plain[2], table_expanded_avx2[2], table_compact_plain[2], table_compact_avx2[2];
+
+/* Memory for `bytes` of table: aligned to a cache line, on large pages where the system gives them. */
+void *table_store_alloc(size_t bytes);
+
+/* What brings values up to `largest` to [0, 1]; 0 for a table that is as good as all zero. */
+static inline float table_factor(float largest)
+{
+	return largest >= 0x1p-125f ? 1 / largest : 0;
+}
+
+/* A value of [0, 1] as 6 bits of exponent and 10 of mantissa, to nearest; 0 below 2^-62. 1.0 has exponent 63. */
+static inline uint16_t table_encode(float value)
+{
+	union {
+		float value;
+		uint32_t bits;
+	} u = {value};
+	int32_t code = (int32_t)((u.bits + 0x1000) >> 13) - ((127 - 63) << 10);
+	return (uint16_t)(code < 1 << 10 ? 0 : code);
+}
+
+/* The value again, exactly. */
+static inline float table_decode(uint16_t code)
+{
+	union {
+		uint32_t bits;
+		float value;
+	} u = {(uint32_t)code << 13};
+	return u.value * 0x1p64f;
+}
+
+#endif

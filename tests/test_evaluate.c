@@ -1,0 +1,306 @@
+/* Evaluation against a slow reference: trilinear on lower corners, in double, from the expansion itself. */
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "model/compact.h"
+#include "model/direction.h"
+#include "model/evaluate.h"
+#include "model/kernels.h"
+
+static uint64_t state = 11;
+static double uniform(void)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return (double)(state >> 11) * 0x1p-53;
+}
+
+static void hemisphere(float out[3])
+{
+	double z = 1 - uniform(), phi = 2 * M_PI * uniform(), r = sqrt(1 - z * z);
+	out[0] = (float)(r * cos(phi));
+	out[1] = (float)(r * sin(phi));
+	out[2] = (float)z;
+}
+
+/* A smooth coloured material with a highlight, periodic in phi_d. */
+static struct expansion smooth_material(struct lattice_dims dims, double unit)
+{
+	struct expansion e;
+	assert_int_equal(expansion_alloc(dims, &e, NULL), BP_OK);
+	e.unit = unit;
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++)
+			for (uint32_t k = 0; k < dims.phi_d; k++) {
+				double h = (double)i / dims.theta_h, d = (double)j / dims.theta_d, p = 2 * M_PI * k / dims.phi_d;
+				double gloss = 80 * exp(-30 * h * h) * (1 + 3 * pow(d, 5)), body = 0.2 * (1 - 0.3 * d * h * cos(p));
+				size_t n = lattice_index(dims, i, j, k);
+				e.rgb[0][n] = (float)(gloss + body * (1 + 0.1 * sin(p) * h * d));
+				e.rgb[1][n] = (float)(gloss + 0.4 * body);
+				e.rgb[2][n] = (float)(0.9 * gloss + 0.05 * body * (1 + 0.2 * cos(p) * h));
+			}
+	return e;
+}
+
+static double corner(const struct expansion *e, int channel, uint32_t i, uint32_t j, uint32_t k)
+{
+	i = i < e->dims.theta_h ? i : e->dims.theta_h - 1;
+	j = j < e->dims.theta_d ? j : e->dims.theta_d - 1;
+	return (double)e->rgb[channel][lattice_index(e->dims, i, j, k % e->dims.phi_d)] * e->unit;
+}
+
+static double reference(const struct expansion *e, int channel, struct lattice_point at, int nearest)
+{
+	uint32_t i = (uint32_t)at.h, j = (uint32_t)at.d, k = (uint32_t)at.p;
+	i = i < e->dims.theta_h ? i : e->dims.theta_h - 1;
+	j = j < e->dims.theta_d ? j : e->dims.theta_d - 1;
+	if (nearest)
+		return corner(e, channel, i, j, k);
+	double h = (double)at.h - i, d = (double)at.d - j, p = (double)at.p - k, sum = 0;
+	for (uint32_t n = 0; n < 8; n++)
+		sum += (n & 1 ? h : 1 - h) * (n & 2 ? d : 1 - d) * (n & 4 ? p : 1 - p) *
+		       corner(e, channel, i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
+	return sum;
+}
+
+static void compare(const struct expansion *e, const struct table *table, int channels, int count, double relative, int edges)
+{
+	for (int n = 0; n < count; n++) {
+		float wi[3], wo[3], rgb[3], near[3];
+		struct lattice_point at;
+		hemisphere(wi);
+		hemisphere(wo);
+		if (edges && n % 3 == 0) { /* mirror directions: theta_h about 0 */
+			wo[0] = -wi[0] + 1e-4f * (float)(n % 5);
+			wo[1] = -wi[1];
+			wo[2] = wi[2];
+		}
+		if (edges && n % 3 == 1) /* grazing: theta_d to 90 degrees */
+			wi[2] *= 1e-4f, wo[2] *= 1e-4f;
+		assert_true(direction_to_lattice(e->dims, wi, wo, &at));
+		table_evaluate(table, wi, wo, rgb);
+		table_nearest(table, wi, wo, near);
+		for (int c = 0; c < 3; c++) {
+			double want = reference(e, c, at, 0), cell = reference(e, c, at, 1);
+			if (channels == 1) {
+				want = (reference(e, 0, at, 0) + reference(e, 1, at, 0) + reference(e, 2, at, 0)) / 3;
+				cell = (reference(e, 0, at, 1) + reference(e, 1, at, 1) + reference(e, 2, at, 1)) / 3;
+			}
+			assert_true(fabs((double)rgb[c] - want) <= relative * want);
+			assert_true(fabs((double)near[c] - cell) <= relative * cell);
+		}
+	}
+}
+
+static struct table *build(const struct expansion *e, enum table_form form, int channels)
+{
+	struct table *table = NULL;
+	bp_error error;
+	assert_int_equal(table_build(e, form, channels, &table, &error), BP_OK);
+	return table;
+}
+
+static void the_expanded_form_keeps_every_value_to_2_to_the_minus_11(void **user)
+{
+	(void)user;
+	const struct lattice_dims dims[] = {{90, 90, 180}, {4, 4, 4}, {5, 7, 37}, {16, 4, 19}};
+	for (size_t n = 0; n < sizeof dims / sizeof *dims; n++) {
+		struct expansion e = smooth_material(dims[n], 1);
+		for (int channels = 1; channels <= 3; channels += 2) {
+			struct table *table = build(&e, TABLE_EXPANDED, channels);
+			compare(&e, table, channels, 5000, 0x1p-11 + 1e-5, 1);
+			table_free(table);
+		}
+		expansion_free(&e);
+	}
+}
+
+static void the_compact_form_keeps_a_smooth_material_to_half_a_percent(void **user)
+{
+	(void)user;
+	const struct lattice_dims dims[] = {{90, 90, 180}, {30, 30, 395}, {30, 30, 127}};
+	for (size_t n = 0; n < sizeof dims / sizeof *dims; n++) {
+		struct expansion e = smooth_material(dims[n], 1);
+		for (int channels = 1; channels <= 3; channels += 2) {
+			struct table *table = build(&e, TABLE_COMPACT, channels);
+			compare(&e, table, channels, 5000, 5e-3, 1);
+			table_free(table);
+		}
+		expansion_free(&e);
+	}
+}
+
+static void tables_stay_within_their_memory(void **user)
+{
+	(void)user;
+	struct expansion e = smooth_material((struct lattice_dims){90, 90, 180}, 1);
+	struct table *expanded = build(&e, TABLE_EXPANDED, 3), *compact = build(&e, TABLE_COMPACT, 3);
+	assert_true(table_bytes(expanded) < 8.8e6);
+	assert_true(table_bytes(compact) < 2.6e6);
+	table_free(expanded);
+	table_free(compact);
+	expansion_free(&e);
+}
+
+static void a_batch_gives_the_same_bits_as_single_calls_at_any_count(void **user)
+{
+	(void)user;
+	enum { COUNT = 200 };
+	struct expansion e = smooth_material((struct lattice_dims){20, 20, 40}, 0.5);
+	float in[6][COUNT], out[3][COUNT];
+	for (int n = 0; n < COUNT; n++) {
+		float wi[3], wo[3];
+		hemisphere(wi);
+		hemisphere(wo);
+		for (int c = 0; c < 3; c++) {
+			in[c][n] = wi[c] * (n % 4 ? 1 : 3);
+			in[3 + c][n] = wo[c];
+		}
+		if (n % 10 == 0)
+			in[2][n] = -in[2][n];
+		if (n % 10 == 1)
+			in[5][n] = n % 20 == 1 ? NAN : 0;
+		if (n % 10 == 2)
+			in[3][n] = n % 20 == 2 ? INFINITY : NAN;
+	}
+	for (int form = 0; form < 2; form++)
+		for (int channels = 1; channels <= 3; channels += 2) {
+			struct table *table = build(&e, (enum table_form)form, channels);
+			for (size_t count = 0; count <= COUNT; count += count < 70 ? 1 : 13) {
+				for (size_t m = 0; m < 3 * COUNT; m++)
+					out[m / COUNT][m % COUNT] = -1;
+				table_evaluate_batch(table, count, (const float *const[]){in[0], in[1], in[2]},
+				                     (const float *const[]){in[3], in[4], in[5]}, (float *const[]){out[0], out[1], out[2]});
+				for (size_t m = 0; m < COUNT; m++) {
+					float want[3];
+					const float wi[3] = {in[0][m], in[1][m], in[2][m]}, wo[3] = {in[3][m], in[4][m], in[5][m]};
+					table_evaluate(table, wi, wo, want);
+					for (int c = 0; c < 3; c++)
+						assert_true(out[c][m] == (m < count ? want[c] : -1));
+				}
+			}
+			table_free(table);
+		}
+	expansion_free(&e);
+}
+
+static void plain_and_avx2_kernels_give_the_same_bits(void **user)
+{
+	(void)user;
+	if (!kernels_avx2_usable())
+		skip();
+	struct expansion e = smooth_material((struct lattice_dims){20, 20, 40}, 1);
+	for (int form = 0; form < 2; form++)
+		for (int channels = 1; channels <= 3; channels += 2) {
+			struct table *table = build(&e, (enum table_form)form, channels);
+			const struct table_kernels *plain = &(form ? table_compact_plain : table_expanded_plain)[channels == 3];
+			const struct table_kernels *avx2 = &(form ? table_compact_avx2 : table_expanded_avx2)[channels == 3];
+			for (int n = 0; n < 20000; n++) {
+				float wi[3], wo[3], a[3], b[3];
+				hemisphere(wi);
+				hemisphere(wo);
+				plain->evaluate(table, wi, wo, a);
+				avx2->evaluate(table, wi, wo, b);
+				assert_memory_equal(a, b, sizeof a);
+				plain->nearest(table, wi, wo, a);
+				avx2->nearest(table, wi, wo, b);
+				assert_memory_equal(a, b, sizeof a);
+			}
+			table_free(table);
+		}
+	expansion_free(&e);
+}
+
+static void unusable_directions_give_0(void **user)
+{
+	(void)user;
+	const float good[3] = {0.6f, 0, 0.8f};
+	const float bad[][3] = {{0, 0, 0}, {0.6f, 0, -0.8f}, {1, 0, 0}, {NAN, 0, 1}, {0, 0, NAN}, {INFINITY, 0, 1}, {0, 0, INFINITY}, {1e30f, 0, 1e30f}};
+	struct expansion e = smooth_material((struct lattice_dims){8, 8, 8}, 1);
+	for (int form = 0; form < 2; form++) {
+		struct table *table = build(&e, (enum table_form)form, 3);
+		for (size_t n = 0; n < sizeof bad / sizeof *bad; n++)
+			for (int swap = 0; swap < 2; swap++) {
+				float rgb[3] = {7, 7, 7};
+				table_evaluate(table, swap ? good : bad[n], swap ? bad[n] : good, rgb);
+				assert_true(rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0);
+				table_nearest(table, swap ? good : bad[n], swap ? bad[n] : good, rgb);
+				assert_true(rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0);
+			}
+		table_free(table);
+	}
+	expansion_free(&e);
+}
+
+/* All zero, one bright cell, a channel of zeros, steps over many orders: finite, never negative, and zeros stay 0. */
+static void extreme_tables_stay_finite_and_zeros_stay_0(void **user)
+{
+	(void)user;
+	const double units[] = {1, 1e300, 1e-300, 1e-40, 1e38};
+	for (int kind = 0; kind < 4; kind++)
+		for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+			for (int form = 0; form < 2; form++)
+				for (int channels = 1; channels <= 3; channels += 2) {
+					struct expansion e;
+					assert_int_equal(expansion_alloc((struct lattice_dims){6, 6, 24}, &e, NULL), BP_OK);
+					size_t cells = lattice_cells(e.dims);
+					e.unit = units[u];
+					for (size_t n = 0; n < cells; n++)
+						for (int c = 0; c < 3; c++)
+							e.rgb[c][n] = kind == 0 ? 0 : kind == 1 ? (n == 100 ? 1e30f : 0) : kind == 2 ? (c == 1 ? 0 : 1) :
+							                                                              (float)pow(10, 70 * uniform() - 35);
+					struct table *table = build(&e, (enum table_form)form, channels);
+					for (int n = 0; n < 2000; n++) {
+						float wi[3], wo[3], rgb[3];
+						hemisphere(wi);
+						hemisphere(wo);
+						table_evaluate(table, wi, wo, rgb);
+						for (int c = 0; c < 3; c++) {
+							assert_true(rgb[c] >= 0 && rgb[c] <= FLT_MAX);
+							if (kind == 0)
+								assert_true(rgb[c] == 0);
+						}
+						if (kind == 2 && u == 0 && channels == 3) {
+							assert_true(fabsf(rgb[0] - 1) < 5e-3f && fabsf(rgb[2] - 1) < 5e-3f);
+							assert_true(rgb[1] <= 0x1p-11f);
+						}
+					}
+					table_free(table);
+					expansion_free(&e);
+				}
+}
+
+static void forms_and_channels_that_do_not_exist_are_refused(void **user)
+{
+	(void)user;
+	struct expansion e = smooth_material((struct lattice_dims){4, 4, 4}, 1);
+	struct table *table = NULL;
+	bp_error error;
+	assert_int_equal(table_build(&e, TABLE_EXPANDED, 2, &table, &error), BP_ERROR_ARGUMENT);
+	assert_int_equal(table_build(&e, (enum table_form)2, 3, &table, &error), BP_ERROR_ARGUMENT);
+	assert_null(table);
+	table_free(NULL);
+	expansion_free(&e);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(the_expanded_form_keeps_every_value_to_2_to_the_minus_11),
+		cmocka_unit_test(the_compact_form_keeps_a_smooth_material_to_half_a_percent),
+		cmocka_unit_test(tables_stay_within_their_memory),
+		cmocka_unit_test(a_batch_gives_the_same_bits_as_single_calls_at_any_count),
+		cmocka_unit_test(plain_and_avx2_kernels_give_the_same_bits),
+		cmocka_unit_test(unusable_directions_give_0),
+		cmocka_unit_test(extreme_tables_stay_finite_and_zeros_stay_0),
+		cmocka_unit_test(forms_and_channels_that_do_not_exist_are_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
