@@ -35,9 +35,12 @@ bp_status archive_read(const struct bp_archive *archive, uint64_t offset, void *
 			continue;
 		if (got < 0)
 			return error_set(error, BP_ERROR_IO, offset + done, "%s: cannot read: %s", archive->path, strerror(errno));
-		if (got == 0)
-			return error_set(error, BP_ERROR_CORRUPT, offset + done, "the file ends here, %zu more bytes were expected",
-			                 count - done);
+		if (got == 0) {
+			struct stat now;
+			uint64_t end = fstat(archive->fd, &now) == 0 && (uint64_t)now.st_size < offset + done ? (uint64_t)now.st_size : offset + done;
+			return error_set(error, BP_ERROR_CORRUPT, end, "the file ends here, bytes up to %llu were expected",
+			                 (unsigned long long)(offset + count));
+		}
 		done += (size_t)got;
 		*archive->bytes_read += (uint64_t)got;
 	}

@@ -1,0 +1,187 @@
+/*
+ * verify.c: reads all of an archive and checks what FORMAT.md says of it: the header, the tree of index
+ * pages, that records follow each other without gap in name order, and every checksum.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../codec/name.h"
+#include "../error.h"
+#include "reader.h"
+
+struct walk {
+	const bp_archive *archive;
+	unsigned flags;
+	bp_problem_fn *report;
+	void *user;
+	bp_error *first; /* of the caller; may be NULL */
+	bp_status status;
+	bool ended;             /* the caller has seen enough */
+	uint64_t next_ordinal;  /* that the next leaf should begin with */
+	uint64_t next_offset;   /* where the next record should begin; 0 after damage: unknown */
+	uint64_t pages_seen;
+	uint32_t last_name_bytes;
+	char last_name[BP_NAME_BYTES_MAX + 1];
+};
+
+static void problem_report(struct walk *walk, const char *material, const bp_error *error)
+{
+	bp_problem problem = { .material = material, .error = *error };
+	if (walk->ended)
+		return;
+	if (!walk->status) {
+		walk->status = error->status;
+		if (walk->first)
+			*walk->first = *error;
+	}
+	walk->ended = walk->report && walk->report(walk->user, &problem) != 0;
+}
+
+/* Every value of the expanded layer is finite and not negative. */
+static bp_status layer_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                             uint32_t layers, struct expansion *table, bp_error *error)
+{
+	struct model *model = NULL;
+	size_t cells = lattice_cells(head->dims);
+	bp_status status = archive_entry_load(archive, entry, head, layers, &model, error);
+	if (!status)
+		status = model_expand(model, 0, table, error);
+	model_free(model);
+	if (!status && !(table->unit > 0 && isfinite(table->unit)))
+		status = error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: the unit of its values is %g", layers - 1, table->unit);
+	for (int c = 0; !status && c < 3; c++)
+		for (size_t i = 0; i < cells; i++)
+			if (!(table->rgb[c][i] >= 0 && isfinite(table->rgb[c][i]))) {
+				status = error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: channel %d of cell %zu decodes to %g",
+				                   layers - 1, c, i, (double)table->rgb[c][i]);
+				break;
+			}
+	return status;
+}
+
+static bp_status layers_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                              bp_error *error)
+{
+	struct expansion table = { 0 };
+	bp_status status = expansion_alloc(head->dims, &table, error);
+	for (uint32_t l = 1; !status && l <= head->layer_count; l++)
+		status = layer_check(archive, entry, head, l, &table, error);
+	expansion_free(&table);
+	return status;
+}
+
+static void record_check(struct walk *walk, const struct index_entry *entry)
+{
+	struct record_head head;
+	uint8_t *record = NULL;
+	bp_error error = { 0 };
+	if (walk->next_offset && entry->offset != walk->next_offset) {
+		error_set(&error, BP_ERROR_CORRUPT, walk->next_offset, "a record should begin here, the index has it at %llu",
+		          (unsigned long long)entry->offset);
+		problem_report(walk, entry->name, &error);
+	}
+	/* After an entry that points nowhere the next one may be right again. */
+	walk->next_offset = entry->offset <= archive_header(walk->archive)->index_offset ? entry->offset + entry->record_bytes : 0;
+	if (archive_entry_record(walk->archive, entry, &head, &record, &error) != BP_OK) {
+		problem_report(walk, entry->name, &error);
+		return;
+	}
+	free(record);
+	if (walk->flags & BP_VERIFY_DEEP && layers_check(walk->archive, entry, &head, &error) != BP_OK)
+		problem_report(walk, entry->name, &error);
+}
+
+/* The first name of this leaf comes after the last of the one before, and so does its number. */
+static void leaf_check(struct walk *walk, const struct index_page *leaf)
+{
+	uint64_t page_offset = archive_header(walk->archive)->index_offset + (uint64_t)leaf->number * PAGE_BYTES;
+	struct index_entry entry = { 0 };
+	bp_error error;
+	uint32_t bytes;
+	const char *name = index_entry_name(leaf, 0, &bytes);
+	if (walk->last_name_bytes && name_compare(walk->last_name, walk->last_name_bytes, name, bytes) >= 0) {
+		error_set(&error, BP_ERROR_CORRUPT, page_offset, "index page %u is not in name order", leaf->number);
+		problem_report(walk, NULL, &error);
+	}
+	if (leaf->first_ordinal != walk->next_ordinal) {
+		error_set(&error, BP_ERROR_CORRUPT, page_offset, "index page %u begins with material %llu, expected %llu", leaf->number,
+		          (unsigned long long)leaf->first_ordinal, (unsigned long long)walk->next_ordinal);
+		problem_report(walk, NULL, &error);
+	}
+	for (uint32_t i = 0; i < leaf->count && !walk->ended; i++) {
+		index_leaf_entry(leaf, i, &entry);
+		record_check(walk, &entry);
+	}
+	walk->next_ordinal = leaf->first_ordinal + leaf->count;
+	walk->last_name_bytes = entry.name_bytes;
+	memcpy(walk->last_name, entry.name, sizeof walk->last_name);
+}
+
+static void page_walk(struct walk *walk, const struct page_expect *expect, uint64_t end_ordinal)
+{
+	struct index_page page;
+	bp_error error;
+	/* A hostile tree could lead to the same page on many ways. */
+	if (walk->ended || ++walk->pages_seen > archive_header(walk->archive)->page_count)
+		return;
+	if (archive_page_read(walk->archive, expect, &page, &error) != BP_OK) {
+		problem_report(walk, NULL, &error);
+		walk->next_ordinal = end_ordinal;
+		walk->next_offset = 0;
+		return;
+	}
+	if (page.level == 0) {
+		leaf_check(walk, &page);
+		return;
+	}
+	for (uint32_t i = 0; i < page.count && !walk->ended; i++) {
+		struct page_expect child = index_child(&page, i);
+		page_walk(walk, &child, index_child_end(&page, i, end_ordinal));
+	}
+}
+
+/* What the whole walk must have come to. */
+static void totals_check(struct walk *walk, const struct archive_header *header)
+{
+	bp_error error;
+	if (walk->next_ordinal != header->count) {
+		error_set(&error, BP_ERROR_CORRUPT, header->index_offset, "the index holds %llu materials, the header says %llu",
+		          (unsigned long long)walk->next_ordinal, (unsigned long long)header->count);
+		problem_report(walk, NULL, &error);
+	}
+	if (walk->pages_seen != header->page_count && !walk->status) {
+		error_set(&error, BP_ERROR_CORRUPT, header->index_offset, "the index uses %llu of its %u pages",
+		          (unsigned long long)walk->pages_seen, header->page_count);
+		problem_report(walk, NULL, &error);
+	}
+	if (walk->next_offset && walk->next_offset != header->index_offset) {
+		error_set(&error, BP_ERROR_CORRUPT, walk->next_offset, "the records end here, the index begins at %llu",
+		          (unsigned long long)header->index_offset);
+		problem_report(walk, NULL, &error);
+	}
+}
+
+bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error)
+{
+	const struct archive_header *header;
+	struct archive_header again;
+	struct walk walk = { .archive = archive, .flags = flags, .report = report, .user = user, .first = error };
+	uint8_t bytes[ARCHIVE_HEADER_BYTES];
+	bp_error problem;
+
+	if (!archive || flags & ~BP_VERIFY_DEEP)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no archive, or unknown flags");
+	header = archive_header(archive);
+	walk.next_offset = ARCHIVE_HEADER_BYTES;
+	if (archive_read(archive, 0, bytes, sizeof bytes, &problem) != BP_OK ||
+	    archive_header_parse(bytes, sizeof bytes, header->file_bytes, &again, &problem) != BP_OK)
+		problem_report(&walk, NULL, &problem);
+	if (header->page_count && !walk.ended) {
+		struct page_expect root = { .number = header->page_count - 1, .level = header->depth - 1 };
+		page_walk(&walk, &root, header->count);
+	}
+	if (!walk.ended)
+		totals_check(&walk, header);
+	return walk.status;
+}

@@ -1,0 +1,64 @@
+#include "angles.h"
+
+#include <stdlib.h>
+
+#include "../error.h"
+
+bp_status angle_tables_alloc(struct lattice_dims dims, struct angle_tables *out, bp_error *error)
+{
+	size_t count = 2 * (size_t)dims.theta_h + 2 * (size_t)dims.theta_d + dims.phi_d;
+	double *values = malloc(count * sizeof *values);
+
+	if (!values)
+		return error_memory(error, count * sizeof *values);
+	*out = (struct angle_tables){.dims = dims, .cos_h = values, .sin_h = values + dims.theta_h};
+	out->cos_d = out->sin_h + dims.theta_h;
+	out->sin_d = out->cos_d + dims.theta_d;
+	out->cos_p = out->sin_d + dims.theta_d;
+	for (uint32_t i = 0; i < dims.theta_h; i++) {
+		double s = (double)i / dims.theta_h;
+		out->cos_h[i] = cos(s * s * M_PI_2);
+		out->sin_h[i] = sin(s * s * M_PI_2);
+	}
+	for (uint32_t j = 0; j < dims.theta_d; j++) {
+		out->cos_d[j] = cos((double)j / dims.theta_d * M_PI_2);
+		out->sin_d[j] = sin((double)j / dims.theta_d * M_PI_2);
+	}
+	for (uint32_t k = 0; k < dims.phi_d; k++)
+		out->cos_p[k] = cos((double)k / dims.phi_d * M_PI);
+	return BP_OK;
+}
+
+void angle_tables_free(struct angle_tables *tables)
+{
+	if (tables)
+		free(tables->cos_h);
+}
+
+static double below(double x, uint32_t extent)
+{
+	double last = nextafter((double)extent, 0);
+
+	return x < 0 ? 0 : x > last ? last : x;
+}
+
+void lattice_coordinates(struct lattice_dims dims, const double wi[3], const double wo[3], double out[3])
+{
+	double x = wi[0] + wo[0], y = wi[1] + wo[1], z = wi[2] + wo[2];
+	double inverse = 1 / sqrt(x * x + y * y + z * z), across = sqrt(x * x + y * y);
+	double cos_h = z * inverse, sin_h = across * inverse;
+	double cos_d = (wi[0] * x + wi[1] * y + wi[2] * z) * inverse;
+	double c = across > 0 ? x / across : 1, s = across > 0 ? y / across : 0;
+	/* wi turned by -phi_h about z, then by -theta_h about y: h becomes the pole */
+	double ax = c * wi[0] + s * wi[1], ay = c * wi[1] - s * wi[0];
+	double phi = atan2(ay, cos_h * ax - sin_h * wi[2]);
+
+	if (phi < 0)
+		phi += M_PI;
+	out[0] = below(sqrt(acos(fmin(1, cos_h)) / M_PI_2) * dims.theta_h, dims.theta_h);
+	out[1] = below(acos(fmin(1, cos_d)) / M_PI_2 * dims.theta_d, dims.theta_d);
+	out[2] = phi / M_PI * dims.phi_d;
+	if (!(out[2] < dims.phi_d))
+		out[2] -= dims.phi_d;
+	out[2] = below(out[2], dims.phi_d);
+}

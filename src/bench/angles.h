@@ -1,0 +1,55 @@
+/*
+ * angles.h: the benchmark's geometry: half/difference angles of a cell and of a pair of directions.
+ *
+ * A stored value belongs to its cell's lower corner (the convention of the metrics).
+ */
+#ifndef BENCH_ANGLES_H
+#define BENCH_ANGLES_H
+
+#include <math.h>
+
+#include "../merl/lattice.h"
+
+/* What the analytic models look at. */
+struct cell_angles {
+	double cos_i, cos_o; /* of incoming and outgoing direction; may be <= 0 in a lattice's corner */
+	double cos_h;        /* of theta_h */
+	double cos_d;        /* of theta_d = the angle between either direction and the half vector */
+};
+
+/* cos and sin of every corner along each axis; freed with angle_tables_free. */
+struct angle_tables {
+	struct lattice_dims dims;
+	double *cos_h, *sin_h, *cos_d, *sin_d, *cos_p;
+};
+
+bp_status angle_tables_alloc(struct lattice_dims dims, struct angle_tables *out, bp_error *error);
+void angle_tables_free(struct angle_tables *tables);
+
+/*
+ * Rusinkiewicz (1998), with phi_h = 0: the half vector is (sin_h, 0, cos_h), wi is (theta_d, phi_d)
+ * about it and wo its mirror image, so cos_i, cos_o = cos_h cos_d -+ sin_h sin_d cos_p.
+ */
+static inline struct cell_angles cell_angles_at(const struct angle_tables *t, uint32_t i, uint32_t j, uint32_t k)
+{
+	double a = t->cos_h[i] * t->cos_d[j], b = t->sin_h[i] * t->sin_d[j] * t->cos_p[k];
+
+	return (struct cell_angles){a - b, a + b, t->cos_h[i], t->cos_d[j]};
+}
+
+/* The same from directions: no trigonometry. */
+static inline struct cell_angles cell_angles_of(const double wi[3], const double wo[3])
+{
+	double x = wi[0] + wo[0], y = wi[1] + wo[1], z = wi[2] + wo[2];
+	double inverse = 1 / sqrt(x * x + y * y + z * z);
+
+	return (struct cell_angles){wi[2], wo[2], z * inverse, (wi[0] * x + wi[1] * y + wi[2] * z) * inverse};
+}
+
+/*
+ * Lattice coordinates of a pair of directions: out[0] in [0, H), out[1] in [0, D), out[2] in [0, P),
+ * in cells; truncating each gives the cell of the database's own sample code.
+ */
+void lattice_coordinates(struct lattice_dims dims, const double wi[3], const double wo[3], double out[3]);
+
+#endif

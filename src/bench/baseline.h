@@ -1,0 +1,52 @@
+/*
+ * baseline.h: one interface for everything the benchmark compares.
+ *
+ *     material -> fit -> state (what would be stored) -> expand -> table
+ *                                                     -> evaluate one pair of directions
+ *
+ * A state holds what is stored, in the precision that is stored (float32 parameters, or a
+ * codec's bytes), so the bytes that are reported are the bytes that the figures come from.
+ */
+#ifndef BENCH_BASELINE_H
+#define BENCH_BASELINE_H
+
+#include "../merl/lattice.h"
+
+/* One measured material as the benchmark holds it. */
+struct bench_material {
+	const char *name;
+	const struct lattice *lattice;
+	const uint8_t *raw; /* the file's bytes, for the lossless codecs; NULL: the planes are coded instead */
+	size_t raw_bytes;
+};
+
+struct baseline {
+	const char *name;      /* one word, the row's key in the table */
+	const char *reference; /* author and year, or library */
+	bool budgeted;         /* true: fit aims at the budget; false: its size is its own */
+
+	/* *state is for expand, evaluate, ... and is released with free_state. */
+	bp_status (*fit)(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error);
+	size_t (*bytes)(const void *state);
+	size_t (*parameters)(const void *state); /* numbers stored; 0 where the state is a codec's bytes */
+
+	/* Fills the whole table; the caller has allocated it with the material's dims. Every value is finite and >= 0. */
+	bp_status (*expand)(const void *state, struct expansion *out, bp_error *error);
+
+	/*
+	 * One evaluation: unit vectors in the local frame (normal = +z), both above the horizon; rgb in 1/sr.
+	 * NULL: nothing short of decoding the whole can be evaluated; the benchmark then times a
+	 * nearest look-up in the decoded table.
+	 */
+	void (*evaluate)(const void *state, const double wi[3], const double wo[3], double rgb[3]);
+	void (*free_state)(void *state); /* NULL is allowed */
+};
+
+/* The analytic models: no budget, tens of bytes. */
+extern const struct baseline BASELINE_WARD, BASELINE_COOK_TORRANCE, BASELINE_EDWARDS;
+/* Data-driven models of the paper's authors. */
+extern const struct baseline BASELINE_COPULA, BASELINE_TUCKER;
+/* General codecs. */
+extern const struct baseline BASELINE_ZFP, BASELINE_ZLIB, BASELINE_ZSTD, BASELINE_XZ;
+
+#endif

@@ -1,0 +1,254 @@
+#include "lobe.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_multimin.h>
+#include <stdlib.h>
+
+#include "../error.h"
+#include "lobe_sample.h"
+
+enum { STARTS_KEPT = 3, ITERATIONS_MAX = 300, SAMPLES_D = 30, SAMPLES_P = 30, THIN = 3 };
+
+struct search {
+	const struct lobe_model *model;
+	const struct lobe_sample *sample;
+	double diffuse[3], specular[3]; /* of the last evaluation, in the sample's unit */
+};
+
+static void shape_from_free(const struct lobe_model *model, const double *x, double *shape)
+{
+	for (int n = 0; n < model->shape_count; n++)
+		shape[n] = model->axis[n].map == LOBE_EXP ? exp(fmin(50, fmax(-50, x[n]))) : 1 / (1 + exp(-fmin(50, fmax(-50, x[n]))));
+}
+
+static double free_from_shape(const struct lobe_axis *axis, double shape)
+{
+	return axis->map == LOBE_EXP ? log(shape) : log(shape / (1 - shape));
+}
+
+/*
+ * E^2 in the sample's unit, minimised over albedos >= 0. With basis functions p = 1/pi and l = the lobe:
+ * normal equations of two unknowns; where the free optimum leaves the quadrant, the better edge.
+ */
+static double project(struct search *search, const double *shape)
+{
+	const struct lobe_sample *s = search->sample;
+	const double p = 1 / M_PI;
+	double l1 = 0, l2 = 0, y1[3] = {0}, y2[3] = {0}, yl[3] = {0}, sum = 0;
+
+	for (size_t n = 0; n < s->count; n++) {
+		double w = s->weight[n], l = search->model->value(shape, s->angles[n]);
+		l1 += w * l;
+		l2 += w * l * l;
+		for (int c = 0; c < 3; c++) {
+			double y = s->rgb[c][n];
+			y1[c] += w * y;
+			y2[c] += w * y * y;
+			yl[c] += w * y * l;
+		}
+	}
+	if (!isfinite(l2))
+		return HUGE_VAL;
+	for (int c = 0; c < 3; c++) {
+		double pp = p * p, pl = p * l1, py = p * y1[c], det = pp * l2 - pl * pl, a = 0, b = 0;
+		if (det > 1e-13 * pp * l2) {
+			a = (py * l2 - yl[c] * pl) / det;
+			b = (yl[c] * pp - py * pl) / det;
+		}
+		if (!(det > 1e-13 * pp * l2) || a < 0 || b < 0) {
+			double only_a = fmax(0, py / pp), only_b = l2 > 0 ? fmax(0, yl[c] / l2) : 0;
+			if (py * only_a >= yl[c] * only_b)
+				a = only_a, b = 0;
+			else
+				a = 0, b = only_b;
+		}
+		search->diffuse[c] = a;
+		search->specular[c] = b;
+		sum += fmax(0, y2[c] - 2 * (a * py + b * yl[c]) + a * a * pp + 2 * a * b * pl + b * b * l2);
+	}
+	return sum;
+}
+
+static double objective(const gsl_vector *x, void *user)
+{
+	struct search *search = user;
+	double shape[LOBE_SHAPE_MAX];
+
+	shape_from_free(search->model, x->data, shape);
+	/* the square root's minimum is a cusp at an exact fit, which the simplex follows to the last digit */
+	return sqrt(project(search, shape));
+}
+
+static bp_status descend(struct search *search, double *x, double *best, bp_error *error)
+{
+	const size_t count = (size_t)search->model->shape_count;
+	gsl_multimin_function function = {objective, count, search};
+	gsl_multimin_fminimizer *minimizer = gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, count);
+	gsl_vector *step = gsl_vector_alloc(count);
+	gsl_vector_view start = gsl_vector_view_array(x, count);
+	bp_status status = BP_OK;
+
+	if (!minimizer || !step) {
+		status = error_memory(error, count * count * sizeof(double));
+		goto out;
+	}
+	/* the second round starts a fresh simplex at the first one's end: a collapsed simplex cannot fool it */
+	for (int round = 0; round < 2; round++) {
+		gsl_vector_set_all(step, round ? 0.05 : 0.3);
+		if (gsl_multimin_fminimizer_set(minimizer, &function, &start.vector, step))
+			break;
+		for (int n = 0; n < ITERATIONS_MAX && !gsl_multimin_fminimizer_iterate(minimizer); n++)
+			if (gsl_multimin_fminimizer_size(minimizer) < 1e-6)
+				break;
+		gsl_vector_memcpy(&start.vector, minimizer->x);
+	}
+	*best = minimizer->fval;
+out:
+	gsl_vector_free(step);
+	if (minimizer)
+		gsl_multimin_fminimizer_free(minimizer);
+	return status;
+}
+
+struct start {
+	double error, x[LOBE_SHAPE_MAX];
+};
+
+/* The best STARTS_KEPT points of the grid, in order; ties keep the earlier. */
+static void search_grid(struct search *search, struct start *kept)
+{
+	const struct lobe_model *model = search->model;
+	int at[LOBE_SHAPE_MAX] = {0};
+
+	for (int n = 0; n < STARTS_KEPT; n++)
+		kept[n].error = HUGE_VAL;
+	for (;;) {
+		struct start start;
+		double shape[LOBE_SHAPE_MAX];
+		int axis = 0;
+		for (int n = 0; n < model->shape_count; n++) {
+			const struct lobe_axis *a = &model->axis[n];
+			double first = free_from_shape(a, a->first), last = free_from_shape(a, a->last);
+			start.x[n] = first + (last - first) * at[n] / (a->steps - 1);
+		}
+		shape_from_free(model, start.x, shape);
+		start.error = project(search, shape);
+		for (int n = 0; n < STARTS_KEPT; n++)
+			if (start.error < kept[n].error) {
+				struct start swap = kept[n];
+				kept[n] = start;
+				start = swap;
+			}
+		while (axis < model->shape_count && ++at[axis] == model->axis[axis].steps)
+			at[axis++] = 0;
+		if (axis == model->shape_count)
+			return;
+	}
+}
+
+bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, void **state, bp_error *error)
+{
+	const uint32_t stride_d = (lattice->dims.theta_d + SAMPLES_D - 1) / SAMPLES_D;
+	const uint32_t stride_p = (lattice->dims.phi_d + SAMPLES_P - 1) / SAMPLES_P;
+	struct lobe_sample thin = {0}, dense = {0};
+	struct search search = {.model = model};
+	struct start starts[STARTS_KEPT];
+	struct lobe_state *out = calloc(1, sizeof *out);
+	double best = HUGE_VAL;
+	bp_status status;
+
+	if (!out)
+		return error_memory(error, sizeof *out);
+	gsl_set_error_handler_off();
+	if ((status = lobe_sample_take(lattice, stride_d, stride_p, &dense, error)))
+		goto out;
+	if ((status = lobe_sample_take(lattice, THIN * stride_d, THIN * stride_p, &thin, NULL)))
+		thin = (struct lobe_sample){0}; /* so few valid cells: the dense sample serves for both */
+	search.sample = thin.count ? &thin : &dense;
+	search_grid(&search, starts);
+	search.sample = &dense;
+	for (int n = 0; n < STARTS_KEPT; n++) {
+		double shape[LOBE_SHAPE_MAX], found = HUGE_VAL;
+		if (!isfinite(starts[n].error))
+			continue;
+		if ((status = descend(&search, starts[n].x, &found, error)))
+			goto out;
+		if (!(found < best))
+			continue;
+		best = found;
+		shape_from_free(model, starts[n].x, shape);
+		for (int a = 0; a < model->shape_count; a++)
+			out->shape[a] = (float)shape[a];
+	}
+	/* the albedos that go with the shape as it is stored */
+	double shape[LOBE_SHAPE_MAX];
+	for (int a = 0; a < model->shape_count; a++)
+		shape[a] = out->shape[a];
+	out->error = sqrt(project(&search, shape)) * dense.unit;
+	for (int c = 0; c < 3; c++) {
+		out->diffuse[c] = (float)(search.diffuse[c] * dense.unit);
+		out->specular[c] = (float)(search.specular[c] * dense.unit);
+	}
+	out->model = model;
+	out->dims = lattice->dims;
+	*state = out;
+	out = NULL;
+	status = BP_OK;
+out:
+	lobe_sample_free(&thin);
+	lobe_sample_free(&dense);
+	free(out);
+	return status;
+}
+
+size_t lobe_parameters(const void *state)
+{
+	return 6 + (size_t)((const struct lobe_state *)state)->model->shape_count;
+}
+
+size_t lobe_bytes(const void *state)
+{
+	return lobe_parameters(state) * sizeof(float);
+}
+
+static double lobe_at(const struct lobe_state *state, struct cell_angles a)
+{
+	double shape[LOBE_SHAPE_MAX];
+
+	for (int n = 0; n < state->model->shape_count; n++)
+		shape[n] = state->shape[n];
+	a.cos_i = fmax(a.cos_i, LOBE_COSINE_MIN);
+	a.cos_o = fmax(a.cos_o, LOBE_COSINE_MIN);
+	return state->model->value(shape, a);
+}
+
+bp_status lobe_expand(const void *opaque, struct expansion *out, bp_error *error)
+{
+	const struct lobe_state *state = opaque;
+	const struct lattice_dims dims = out->dims;
+	struct angle_tables tables;
+	bp_status status = angle_tables_alloc(dims, &tables, error);
+
+	if (status)
+		return status;
+	out->unit = 1;
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++)
+			for (uint32_t k = 0; k < dims.phi_d; k++) {
+				size_t cell = lattice_index(dims, i, j, k);
+				double lobe = lobe_at(state, cell_angles_at(&tables, i, j, k));
+				for (int c = 0; c < 3; c++)
+					out->rgb[c][cell] = (float)(state->diffuse[c] / M_PI + state->specular[c] * lobe);
+			}
+	angle_tables_free(&tables);
+	return BP_OK;
+}
+
+void lobe_evaluate(const void *opaque, const double wi[3], const double wo[3], double rgb[3])
+{
+	const struct lobe_state *state = opaque;
+	double lobe = lobe_at(state, cell_angles_of(wi, wo));
+
+	for (int c = 0; c < 3; c++)
+		rgb[c] = state->diffuse[c] / M_PI + state->specular[c] * lobe;
+}

@@ -1,0 +1,62 @@
+/*
+ * lobe.h: analytic models of the form
+ *
+ *     f_c = diffuse_c / pi + specular_c lobe(shape; wi, wo)          c = R, G, B
+ *
+ * with one lobe shape for the three channels (a material has one roughness) and a diffuse and a
+ * specular albedo per channel: 6 + shape_count float32 parameters.
+ *
+ * Objective (Ngan, Durand, Matusik 2005, section 3): the cosine-weighted squared error
+ *
+ *     E^2 = sum w (f cos - b cos)^2 / sum w
+ *
+ * over the valid cells with theta_i, theta_o <= 80 degrees, summed over the channels. w is the
+ * measure d omega_i d omega_o = 4 cos theta_d d omega_h d omega_d of the cell; because a cell stands for
+ * both orders of the two directions, cos^2 is the mean of cos^2 theta_i and cos^2 theta_o.
+ *
+ * For a given shape the best albedos are a linear least-squares problem with two unknowns >= 0
+ * (variable projection), so the search runs over the shape alone: a grid of starts on a thin sample
+ * of cells, then Nelder-Mead (GSL nmsimplex2) from the best three on a denser one. The sample takes every
+ * theta_h and a regular stride of theta_d and phi_d: nothing is random.
+ */
+#ifndef BENCH_LOBE_H
+#define BENCH_LOBE_H
+
+#include "angles.h"
+#include "baseline.h"
+
+enum { LOBE_SHAPE_MAX = 3 };
+
+/* The models divide by cosines; at the horizon (a lattice's corners reach it, and a little below) they go on with this one. */
+#define LOBE_COSINE_MIN 0.01
+
+/* One search variable: shape = exp(free) or 1 / (1 + exp(-free)). */
+struct lobe_axis {
+	enum { LOBE_EXP, LOBE_UNIT } map;
+	double first, last; /* shape values of the grid's ends */
+	int steps;          /* grid points, evenly spaced in the free variable */
+};
+
+struct lobe_model {
+	int shape_count;
+	struct lobe_axis axis[LOBE_SHAPE_MAX];
+	double (*value)(const double *shape, struct cell_angles angles); /* 1/sr; cosines >= LOBE_COSINE_MIN */
+};
+
+struct lobe_state {
+	const struct lobe_model *model;
+	struct lattice_dims dims;
+	float shape[LOBE_SHAPE_MAX], diffuse[3], specular[3];
+	double error; /* E of the fitted cells, 1/sr */
+};
+
+bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, void **state, bp_error *error);
+size_t lobe_bytes(const void *state);
+size_t lobe_parameters(const void *state);
+bp_status lobe_expand(const void *state, struct expansion *out, bp_error *error);
+void lobe_evaluate(const void *state, const double wi[3], const double wo[3], double rgb[3]);
+
+/* The models' lobes, for the tests. */
+extern const struct lobe_model LOBE_WARD, LOBE_COOK_TORRANCE, LOBE_EDWARDS;
+
+#endif

@@ -1,0 +1,90 @@
+#include "lobe_sample.h"
+
+#include <stdlib.h>
+
+#include "../error.h"
+
+/* cos 80 degrees: Ngan et al. leave out what lies beyond, where measurements are unreliable. */
+static const double COSINE_LIMIT = 0.17364817766693036;
+
+/* The measure along theta_h of corner i: the integral of sin over [(i - 1/2)^2, (i + 1/2)^2] / H^2 pi/2. */
+static double measure_h(uint32_t i, uint32_t extent)
+{
+	double low = i > 0 ? (i - 0.5) / extent : 0, high = (i + 0.5) / extent;
+
+	return cos(low * low * M_PI_2) - cos(fmin(1, high * high) * M_PI_2);
+}
+
+/* ... of 4 cos sin along theta_d. */
+static double measure_d(uint32_t j, uint32_t extent)
+{
+	double low = j > 0 ? sin((j - 0.5) / extent * M_PI_2) : 0, high = sin(fmin(1, (j + 0.5) / extent) * M_PI_2);
+
+	return 2 * (high * high - low * low);
+}
+
+bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uint32_t stride_p, struct lobe_sample *out,
+                           bp_error *error)
+{
+	const struct lattice_dims dims = lattice->dims;
+	size_t most = (size_t)dims.theta_h * ((dims.theta_d + stride_d - 1) / stride_d) * ((dims.phi_d + stride_p - 1) / stride_p);
+	size_t bytes = most * (sizeof(struct cell_angles) + 4 * sizeof(double) + sizeof(uint32_t));
+	struct angle_tables tables;
+	struct lobe_sample sample = {.unit = 0};
+	double weight_sum = 0;
+	bp_status status = angle_tables_alloc(dims, &tables, error);
+
+	if (status)
+		return status;
+	sample.angles = malloc(bytes);
+	if (!sample.angles) {
+		status = error_memory(error, bytes);
+		goto out;
+	}
+	sample.weight = (double *)(void *)(sample.angles + most);
+	for (int c = 0; c < 3; c++)
+		sample.rgb[c] = sample.weight + (size_t)(c + 1) * most;
+	sample.cell = (uint32_t *)(void *)(sample.weight + 4 * most);
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j += stride_d)
+			for (uint32_t k = 0; k < dims.phi_d; k += stride_p) {
+				size_t cell = lattice_index(dims, i, j, k), n = sample.count;
+				struct cell_angles a = cell_angles_at(&tables, i, j, k);
+				if (!lattice->valid[cell] || a.cos_i < COSINE_LIMIT || a.cos_o < COSINE_LIMIT)
+					continue;
+				sample.angles[n] = a;
+				sample.cell[n] = (uint32_t)cell;
+				sample.weight[n] = measure_h(i, dims.theta_h) * measure_d(j, dims.theta_d) * 0.5 *
+				                   (a.cos_i * a.cos_i + a.cos_o * a.cos_o);
+				weight_sum += sample.weight[n];
+				for (int c = 0; c < 3; c++) {
+					sample.rgb[c][n] = lattice->rgb[c][cell];
+					sample.unit = fmax(sample.unit, sample.rgb[c][n]);
+				}
+				sample.count++;
+			}
+	if (!sample.count) {
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+		                   "no valid cell within 80 degrees of the normal: nothing to fit an analytic model to");
+		goto out;
+	}
+	if (!(sample.unit > 0))
+		sample.unit = 1;
+	for (size_t n = 0; n < sample.count; n++) {
+		sample.weight[n] /= weight_sum;
+		for (int c = 0; c < 3; c++)
+			sample.rgb[c][n] /= sample.unit;
+	}
+	*out = sample;
+	sample.angles = NULL;
+out:
+	free(sample.angles);
+	angle_tables_free(&tables);
+	return status;
+}
+
+void lobe_sample_free(struct lobe_sample *sample)
+{
+	if (sample)
+		free(sample->angles);
+}

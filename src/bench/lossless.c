@@ -1,0 +1,197 @@
+/*
+ * lossless.c: zlib, zstd and xz on the whole measured file, for scale: what is left when nothing may be lost.
+ * Without the file's bytes the three planes of double are coded instead.
+ */
+#include <lzma.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include "../error.h"
+#include "../merl/merl_file.h"
+#include "baseline.h"
+
+enum { ZLIB_LEVEL = 6, ZSTD_LEVEL = 9, XZ_LEVEL = 1 };
+enum { HEADER_BYTES = 12 };
+
+struct codec {
+	size_t (*bound)(size_t bytes);
+	/* Both return the bytes written, 0 on failure. */
+	size_t (*compress)(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity);
+	size_t (*decompress)(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity);
+};
+
+struct lossless_state {
+	const struct codec *codec;
+	struct lattice_dims dims;
+	bool file; /* a MERL file's bytes; else the planes in 1/sr */
+	size_t plain_bytes, bytes;
+	uint8_t *stream;
+};
+
+static size_t zlib_bound(size_t bytes)
+{
+	return compressBound(bytes);
+}
+
+static size_t zlib_compress(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity)
+{
+	uLongf size = capacity;
+
+	return compress2(out, &size, in, bytes, ZLIB_LEVEL) == Z_OK ? size : 0;
+}
+
+static size_t zlib_decompress(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity)
+{
+	uLongf size = capacity;
+
+	return uncompress(out, &size, in, bytes) == Z_OK ? size : 0;
+}
+
+static size_t zstd_compress(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity)
+{
+	size_t size = ZSTD_compress(out, capacity, in, bytes, ZSTD_LEVEL);
+
+	return ZSTD_isError(size) ? 0 : size;
+}
+
+static size_t zstd_decompress(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity)
+{
+	size_t size = ZSTD_decompress(out, capacity, in, bytes);
+
+	return ZSTD_isError(size) ? 0 : size;
+}
+
+static size_t xz_compress(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity)
+{
+	size_t at = 0;
+
+	return lzma_easy_buffer_encode(XZ_LEVEL, LZMA_CHECK_CRC32, NULL, in, bytes, out, &at, capacity) == LZMA_OK ? at : 0;
+}
+
+static size_t xz_decompress(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity)
+{
+	uint64_t memory = UINT64_MAX;
+	size_t from = 0, to = 0;
+
+	return lzma_stream_buffer_decode(&memory, 0, NULL, in, &from, bytes, out, &to, capacity) == LZMA_OK ? to : 0;
+}
+
+static const struct codec ZLIB = {zlib_bound, zlib_compress, zlib_decompress};
+static const struct codec ZSTD = {ZSTD_compressBound, zstd_compress, zstd_decompress};
+static const struct codec XZ = {lzma_stream_buffer_bound, xz_compress, xz_decompress};
+
+static void lossless_free(void *opaque)
+{
+	struct lossless_state *state = opaque;
+
+	if (state)
+		free(state->stream);
+	free(state);
+}
+
+static bp_status fit_with(const struct codec *codec, const struct bench_material *material, void **out, bp_error *error)
+{
+	const size_t cells = lattice_cells(material->lattice->dims);
+	struct lossless_state *state = calloc(1, sizeof *state);
+	uint8_t *planes = NULL;
+	const uint8_t *plain = material->raw;
+	size_t capacity;
+	bp_status status = BP_OK;
+
+	if (!state)
+		return error_memory(error, sizeof *state);
+	*state = (struct lossless_state){.codec = codec, .dims = material->lattice->dims, .file = material->raw != NULL};
+	state->plain_bytes = material->raw ? material->raw_bytes : 3 * cells * sizeof(double);
+	if (!plain) {
+		planes = malloc(state->plain_bytes);
+		if (!planes) {
+			status = error_memory(error, state->plain_bytes);
+			goto out;
+		}
+		for (size_t c = 0; c < 3; c++)
+			memcpy(planes + c * cells * sizeof(double), material->lattice->rgb[c], cells * sizeof(double));
+		plain = planes;
+	}
+	capacity = codec->bound(state->plain_bytes);
+	state->stream = malloc(capacity);
+	if (!state->stream) {
+		status = error_memory(error, capacity);
+		goto out;
+	}
+	state->bytes = codec->compress(plain, state->plain_bytes, state->stream, capacity);
+	if (!state->bytes) {
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the codec refused the table");
+		goto out;
+	}
+	*out = state;
+	state = NULL;
+out:
+	free(planes);
+	lossless_free(state);
+	return status;
+}
+
+static bp_status zlib_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+{
+	(void)budget_bytes;
+	return fit_with(&ZLIB, material, state, error);
+}
+
+static bp_status zstd_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+{
+	(void)budget_bytes;
+	return fit_with(&ZSTD, material, state, error);
+}
+
+static bp_status xz_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+{
+	(void)budget_bytes;
+	return fit_with(&XZ, material, state, error);
+}
+
+static size_t lossless_bytes(const void *state)
+{
+	return ((const struct lossless_state *)state)->bytes;
+}
+
+static size_t lossless_parameters(const void *state)
+{
+	(void)state;
+	return 0;
+}
+
+/* Invalid cells become 0. */
+static bp_status lossless_expand(const void *opaque, struct expansion *out, bp_error *error)
+{
+	const struct lossless_state *state = opaque;
+	const size_t cells = lattice_cells(state->dims);
+	uint8_t *plain = malloc(state->plain_bytes);
+	bp_status status = BP_OK;
+
+	if (!plain)
+		return error_memory(error, state->plain_bytes);
+	if (state->codec->decompress(state->stream, state->bytes, plain, state->plain_bytes) != state->plain_bytes) {
+		status = error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the codec could not decode its own stream");
+		goto out;
+	}
+	out->unit = 1;
+	for (size_t c = 0; c < 3; c++)
+		for (size_t cell = 0; cell < cells; cell++) {
+			double value;
+			memcpy(&value, plain + (state->file ? HEADER_BYTES : 0) + (c * cells + cell) * sizeof value, sizeof value);
+			out->rgb[c][cell] = value > 0 ? (float)(state->file ? value * MERL_SCALE[c] : value) : 0;
+		}
+out:
+	free(plain);
+	return status;
+}
+
+#define LOSSLESS(codec_name, text, codec_fit) \
+	{.name = codec_name, .reference = text, .fit = codec_fit, .bytes = lossless_bytes, .parameters = lossless_parameters, \
+	 .expand = lossless_expand, .free_state = lossless_free}
+
+const struct baseline BASELINE_ZLIB = LOSSLESS("zlib", "zlib " ZLIB_VERSION ", level 6, lossless", zlib_fit);
+const struct baseline BASELINE_ZSTD = LOSSLESS("zstd", "zstd " ZSTD_VERSION_STRING ", level 9, lossless", zstd_fit);
+const struct baseline BASELINE_XZ = LOSSLESS("xz", "xz " LZMA_VERSION_STRING ", preset 1, lossless", xz_fit);

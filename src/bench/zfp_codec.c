@@ -1,0 +1,170 @@
+/*
+ * zfp_codec.c: P. Lindstrom, "Fixed-rate compressed floating-point arrays", 2014; the zfp library. Each channel's
+ * logarithm (log_tensor.h) is one 3-D float array in fixed-accuracy mode. zfp's tolerance counts in powers of two,
+ * so its sizes come in steps: the exponent whose size is nearest to the budget (in ratio) is taken.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <zfp.h>
+
+#include "../error.h"
+#include "baseline.h"
+#include "log_tensor.h"
+
+enum { EXPONENT_MIN = -20, EXPONENT_MAX = 6 };
+
+struct zfp_state {
+	struct lattice_dims dims;
+	int exponent;
+	size_t bytes[3];
+	uint8_t *stream[3];
+};
+
+static void zfp_state_free(void *opaque)
+{
+	struct zfp_state *state = opaque;
+
+	for (int c = 0; state && c < 3; c++)
+		free(state->stream[c]);
+	free(state);
+}
+
+/* Codes or decodes one plane; returns the bytes of the stream, 0 on failure. */
+static size_t run_plane(struct lattice_dims dims, float *plane, int exponent, uint8_t *bytes, size_t capacity, bool decode)
+{
+	zfp_field *field = zfp_field_3d(plane, zfp_type_float, dims.phi_d, dims.theta_d, dims.theta_h);
+	zfp_stream *zfp = zfp_stream_open(NULL);
+	bitstream *stream = stream_open(bytes, capacity);
+	size_t size = 0;
+
+	if (field && zfp && stream) {
+		zfp_stream_set_bit_stream(zfp, stream);
+		zfp_stream_set_accuracy(zfp, ldexp(1, exponent));
+		zfp_stream_rewind(zfp);
+		size = decode ? zfp_decompress(zfp, field) : zfp_compress(zfp, field);
+	}
+	if (stream)
+		stream_close(stream);
+	if (zfp)
+		zfp_stream_close(zfp);
+	if (field)
+		zfp_field_free(field);
+	return size;
+}
+
+static size_t capacity_of(struct lattice_dims dims, float *plane)
+{
+	zfp_field *field = zfp_field_3d(plane, zfp_type_float, dims.phi_d, dims.theta_d, dims.theta_h);
+	zfp_stream *zfp = zfp_stream_open(NULL);
+	size_t capacity = 0;
+
+	if (field && zfp) {
+		zfp_stream_set_accuracy(zfp, ldexp(1, EXPONENT_MIN));
+		capacity = zfp_stream_maximum_size(zfp, field);
+	}
+	if (zfp)
+		zfp_stream_close(zfp);
+	if (field)
+		zfp_field_free(field);
+	return capacity;
+}
+
+static size_t total_size(const struct log_tensor *tensor, int exponent, uint8_t *scratch, size_t capacity)
+{
+	size_t sum = 0;
+
+	for (int c = 0; c < 3; c++)
+		sum += run_plane(tensor->dims, tensor->plane[c], exponent, scratch, capacity, false);
+	return sum;
+}
+
+static bp_status zfp_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error)
+{
+	struct log_tensor tensor = {0};
+	struct zfp_state *state = calloc(1, sizeof *state);
+	uint8_t *scratch = NULL;
+	size_t capacity, high, low;
+	int below = EXPONENT_MIN, above = EXPONENT_MAX;
+	bp_status status;
+
+	if (!state)
+		return error_memory(error, sizeof *state);
+	if ((status = log_tensor_make(material->lattice, &tensor, error)))
+		goto out;
+	state->dims = tensor.dims;
+	capacity = capacity_of(tensor.dims, tensor.plane[0]);
+	scratch = malloc(capacity);
+	if (!scratch || !capacity) {
+		status = error_memory(error, capacity);
+		goto out;
+	}
+	/* size falls as the exponent grows: size(below) > budget >= size(above), where the range allows */
+	while (above - below > 1) {
+		int middle = (above + below + 2 * 64) / 2 - 64; /* rounds down for negative sums too */
+		if (total_size(&tensor, middle, scratch, capacity) > budget_bytes)
+			below = middle;
+		else
+			above = middle;
+	}
+	high = total_size(&tensor, below, scratch, capacity);
+	low = total_size(&tensor, above, scratch, capacity);
+	state->exponent = (double)high / (double)budget_bytes < (double)budget_bytes / (double)low ? below : above;
+	for (int c = 0; c < 3; c++) {
+		state->bytes[c] = run_plane(tensor.dims, tensor.plane[c], state->exponent, scratch, capacity, false);
+		/* the decoder may read a word past the end */
+		state->stream[c] = calloc(1, state->bytes[c] + 8);
+		if (!state->stream[c] || !state->bytes[c]) {
+			status = error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "zfp could not code a plane");
+			goto out;
+		}
+		memcpy(state->stream[c], scratch, state->bytes[c]);
+	}
+	*out = state;
+	state = NULL;
+out:
+	log_tensor_free(&tensor);
+	free(scratch);
+	zfp_state_free(state);
+	return status;
+}
+
+static size_t zfp_bytes(const void *opaque)
+{
+	const struct zfp_state *state = opaque;
+
+	return state->bytes[0] + state->bytes[1] + state->bytes[2];
+}
+
+static size_t zfp_parameters(const void *state)
+{
+	(void)state;
+	return 0;
+}
+
+static bp_status zfp_expand(const void *opaque, struct expansion *out, bp_error *error)
+{
+	const struct zfp_state *state = opaque;
+	const size_t cells = lattice_cells(state->dims);
+
+	out->unit = 1;
+	for (int c = 0; c < 3; c++) {
+		if (!run_plane(state->dims, out->rgb[c], state->exponent, state->stream[c], state->bytes[c] + 8, true))
+			return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "zfp could not decode its own stream");
+		for (size_t cell = 0; cell < cells; cell++)
+			out->rgb[c][cell] = log_tensor_value(out->rgb[c][cell]);
+	}
+	return BP_OK;
+}
+
+const struct baseline BASELINE_ZFP = {
+	.name = "zfp",
+	.reference = "zfp " ZFP_VERSION_STRING ", fixed accuracy, logarithm",
+	.budgeted = true,
+	.fit = zfp_fit,
+	.bytes = zfp_bytes,
+	.parameters = zfp_parameters,
+	.expand = zfp_expand,
+	.free_state = zfp_state_free,
+};

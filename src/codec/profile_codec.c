@@ -1,0 +1,11 @@
+#include "profile_codec.h"
+
+static const struct profile_codec *const CODECS[] = { &PAPER_CODEC };
+
+const struct profile_codec *profile_codec_find(enum profile profile)
+{
+	for (size_t i = 0; i < sizeof CODECS / sizeof *CODECS; i++)
+		if (CODECS[i]->profile == profile)
+			return CODECS[i];
+	return NULL;
+}

@@ -1,0 +1,54 @@
+/*
+ * profile_codec.h: what a profile has to offer to put its models into records. One row per profile
+ * in profile_codec.c; record.c does what all have in common.
+ */
+#ifndef CODEC_PROFILE_CODEC_H
+#define CODEC_PROFILE_CODEC_H
+
+#include "section.h"
+
+/* What an encoder may spend. */
+struct encode_request {
+	const struct fit_options *options;
+	size_t name_bytes;           /* for record_head_size */
+	uint32_t record_bytes_max;   /* head included */
+};
+
+/* A section that has been fetched and whose checksum holds. */
+struct section_bytes {
+	const struct record_section *entry;
+	const uint8_t *bytes; /* entry->bytes of them */
+};
+
+/* A kind of section that this reader understands. */
+struct section_kind {
+	uint16_t type, codec, version;
+};
+
+struct profile_codec {
+	enum profile profile;
+	uint32_t version; /* goes into the record's head; changes when the same input and options would give other bytes */
+	const struct section_kind *kinds;
+	uint32_t kind_count;
+	/*
+	 * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least
+	 * possible, when head and sections cannot be as small as request->record_bytes_max.
+	 */
+	bp_status (*encode)(const struct model *model, const struct encode_request *request, struct section_list *sections,
+	                    uint32_t *layer_count, uint32_t *left_out, bp_error *error);
+	/*
+	 * Builds the profile's part of *model from the sections of the layers that are wanted, in file order; on failure
+	 * record_decode frees what has been attached with model_free. Offsets in errors count from the section's start
+	 * when *failed names its place in the list, which is UINT32_MAX before.
+	 */
+	bp_status (*decode)(const struct record_head *head, const struct section_bytes *sections, uint32_t count,
+	                    struct model *model, uint32_t *failed, bp_error *error);
+};
+
+/* NULL for a profile that this program does not know. */
+const struct profile_codec *profile_codec_find(enum profile profile);
+
+/* paper_sections.c */
+extern const struct profile_codec PAPER_CODEC;
+
+#endif

@@ -1,0 +1,129 @@
+/*
+ * The general codecs: lossless ones give the table back, zfp's size and error move the right way.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bench/baseline.h"
+#include "merl/merl_file.h"
+
+static const struct lattice_dims SMALL = {16, 12, 20};
+
+static struct lattice make_table(void)
+{
+	struct lattice lattice;
+
+	assert_int_equal(lattice_alloc(SMALL, &lattice, NULL), BP_OK);
+	for (size_t cell = 0; cell < lattice_cells(SMALL); cell++) {
+		lattice.valid[cell] = cell % 7 != 0;
+		for (int c = 0; c < 3; c++)
+			lattice.rgb[c][cell] = lattice.valid[cell] ? 0.1 * (c + 1) + 20 * exp(-1e-3 * (double)cell) : 0;
+	}
+	return lattice;
+}
+
+static void lossless_codecs_give_the_planes_back(void **unused)
+{
+	const struct baseline *const codecs[] = {&BASELINE_ZLIB, &BASELINE_ZSTD, &BASELINE_XZ};
+	struct lattice lattice = make_table();
+	const struct bench_material material = {.name = "planes", .lattice = &lattice};
+	struct expansion table;
+	(void)unused;
+
+	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
+	for (int n = 0; n < 3; n++) {
+		void *state;
+		assert_int_equal(codecs[n]->fit(&material, 0, &state, NULL), BP_OK);
+		assert_in_range(codecs[n]->bytes(state), 1, 3 * 8 * lattice_cells(SMALL) + 100);
+		assert_int_equal(codecs[n]->expand(state, &table, NULL), BP_OK);
+		for (int c = 0; c < 3; c++)
+			for (size_t cell = 0; cell < lattice_cells(SMALL); cell++)
+				assert_true(table.rgb[c][cell] == (float)lattice.rgb[c][cell]);
+		codecs[n]->free_state(state);
+	}
+	expansion_free(&table);
+	lattice_free(&lattice);
+}
+
+static void lossless_codecs_read_a_files_bytes_with_its_scale(void **unused)
+{
+	const size_t cells = lattice_cells(SMALL), bytes = 12 + 24 * cells;
+	struct lattice lattice = make_table();
+	uint8_t *raw = calloc(1, bytes);
+	const struct bench_material material = {.name = "file", .lattice = &lattice, .raw = raw, .raw_bytes = bytes};
+	struct expansion table;
+	void *state;
+	(void)unused;
+
+	assert_non_null(raw);
+	for (size_t n = 0; n < 3 * cells; n++) {
+		double stored = n % 5 ? 1500.0 * (double)(n + 1) : -1;
+		memcpy(raw + 12 + 8 * n, &stored, sizeof stored);
+	}
+	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
+	assert_int_equal(BASELINE_ZSTD.fit(&material, 0, &state, NULL), BP_OK);
+	assert_int_equal(BASELINE_ZSTD.expand(state, &table, NULL), BP_OK);
+	assert_true(table.rgb[0][0] == 0); /* -1: not measured */
+	assert_true(table.rgb[0][1] == 2);
+	assert_true(fabs((double)table.rgb[2][3] - 1.66 * (double)(2 * cells + 4)) < 1e-6 * 1.66 * (double)(2 * cells));
+	BASELINE_ZSTD.free_state(state);
+	expansion_free(&table);
+	free(raw);
+	lattice_free(&lattice);
+}
+
+static double largest_error(const struct lattice *lattice, const struct expansion *table)
+{
+	double most = 0;
+
+	for (int c = 0; c < 3; c++)
+		for (size_t cell = 0; cell < lattice_cells(SMALL); cell++)
+			if (lattice->valid[cell])
+				most = fmax(most, fabs(log((double)table->rgb[c][cell] + 1e-3) - log(lattice->rgb[c][cell] + 1e-3)));
+	return most;
+}
+
+static void more_bytes_bring_zfp_closer(void **unused)
+{
+	struct lattice lattice = make_table();
+	const struct bench_material material = {.name = "zfp", .lattice = &lattice};
+	struct expansion table;
+	double error = HUGE_VAL;
+	size_t bytes = 0;
+	(void)unused;
+
+	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
+	for (size_t budget = 1500; budget < 24000; budget *= 4) {
+		void *state;
+		double now;
+		assert_int_equal(BASELINE_ZFP.fit(&material, budget, &state, NULL), BP_OK);
+		assert_int_equal(BASELINE_ZFP.expand(state, &table, NULL), BP_OK);
+		now = largest_error(&lattice, &table);
+		assert_true(now < error);
+		assert_true(BASELINE_ZFP.bytes(state) > bytes);
+		assert_in_range(BASELINE_ZFP.bytes(state), budget / 2, budget * 2);
+		error = now;
+		bytes = BASELINE_ZFP.bytes(state);
+		BASELINE_ZFP.free_state(state);
+	}
+	assert_true(error < 0.1);
+	expansion_free(&table);
+	lattice_free(&lattice);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(lossless_codecs_give_the_planes_back),
+		cmocka_unit_test(lossless_codecs_read_a_files_bytes_with_its_scale),
+		cmocka_unit_test(more_bytes_bring_zfp_closer),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
