@@ -33,11 +33,15 @@ void picture_place(struct picture *picture, uint32_t x, const struct sphere_imag
 bp_status picture_compare(const struct sphere_image *reference, const struct sphere_image *estimate, struct picture *out,
                           bp_error *error);
 
+/* The bytes of a PNG file, malloc'ed; the caller frees them. */
+bp_status picture_encode_png(const struct picture *picture, uint8_t **bytes, size_t *count, bp_error *error);
+
 /*
  * Files. Each is written to a temporary file beside `path`, then renamed: an older file is replaced whole
  * or not at all. PFM: RGB float32 little-endian, bottom row first; the scale field is -unit, -1 in all
  * but tables of extreme magnitude.
  */
+bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp_error *error);
 bp_status picture_write_png(const char *path, const struct picture *picture, bp_error *error);
 bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp_error *error);
 

@@ -68,8 +68,7 @@ bp_status picture_compare(const struct sphere_image *reference, const struct sph
 	return BP_OK;
 }
 
-/* All of `bytes` to `path`, whole or not at all. */
-static bp_status write_whole(const char *path, const void *bytes, size_t count, bp_error *error)
+bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp_error *error)
 {
 	struct output_file file;
 	bp_status status = output_file_open(path, &file, error);
@@ -82,20 +81,31 @@ static bp_status write_whole(const char *path, const void *bytes, size_t count, 
 	return status;
 }
 
-bp_status picture_write_png(const char *path, const struct picture *picture, bp_error *error)
+bp_status picture_encode_png(const struct picture *picture, uint8_t **out, size_t *count, bp_error *error)
 {
 	png_image png = {.version = PNG_IMAGE_VERSION, .width = picture->width, .height = picture->height, .format = PNG_FORMAT_RGB};
 	png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
-	void *memory = malloc(bytes);
+	uint8_t *memory = malloc(bytes);
 	if (!memory)
 		return error_memory(error, bytes);
-	bp_status status;
-	if (png_image_write_to_memory(&png, memory, &bytes, 0, picture->rgb, 0, NULL))
-		status = write_whole(path, memory, bytes, error);
-	else
-		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot encode as PNG: %s", path, png.message);
-	png_image_free(&png);
-	free(memory);
+	if (!png_image_write_to_memory(&png, memory, &bytes, 0, picture->rgb, 0, NULL)) {
+		free(memory);
+		return error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "cannot encode as PNG: %s", png.message);
+	}
+	*out = memory;
+	*count = bytes;
+	return BP_OK;
+}
+
+bp_status picture_write_png(const char *path, const struct picture *picture, bp_error *error)
+{
+	uint8_t *bytes = NULL;
+	size_t count = 0;
+	bp_status status = picture_encode_png(picture, &bytes, &count, error);
+	if (status != BP_OK)
+		return status;
+	status = file_write_whole(path, bytes, count, error);
+	free(bytes);
 	return status;
 }
 
@@ -117,7 +127,7 @@ bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp
 			for (int b = 0; b < 4; b++)
 				to[b] = (uint8_t)(bits >> (8 * b));
 		}
-	bp_status status = write_whole(path, memory, bytes, error);
+	bp_status status = file_write_whole(path, memory, bytes, error);
 	free(memory);
 	return status;
 }

@@ -13,23 +13,14 @@ struct totals {
 	uint64_t materials, record_bytes, source_bytes, failed;
 };
 
-/* Columns a name takes: its UTF-8 characters. Names hold no control characters. */
-static int name_columns(const char *name)
-{
-	int columns = 0;
-	for (; *name; name++)
-		columns += ((unsigned char)*name & 0xc0) != 0x80;
-	return columns;
-}
-
 /* A first walk over the names alone, which stand in the index, so that the table is aligned without keeping it. */
 static int widest_name(struct selection *selection)
 {
 	struct index_entry entry;
 	int widest = 8; /* "material" */
 	for (uint64_t i = 0; i < selection->count; i++)
-		if (!selection_entry(selection, i, &entry, NULL) && name_columns(entry.name) > widest)
-			widest = name_columns(entry.name);
+		if (!selection_entry(selection, i, &entry, NULL) && text_columns(entry.name) > widest)
+			widest = text_columns(entry.name);
 	return widest;
 }
 
@@ -37,7 +28,7 @@ static void row_print(const struct record_head *head, int width)
 {
 	const struct colour_fit *fit = head->colour;
 	printf("%s%*s %9" PRIu32 "  %-7s %6" PRIu32 "  %8.5f  %8.4f %8.4f %8.4f  %8.4f %8.4f %8.4f\n", head->name,
-	       width - name_columns(head->name), "", head->record_bytes, profile_name(head->profile), head->layer_count,
+	       width - text_columns(head->name), "", head->record_bytes, profile_name(head->profile), head->layer_count,
 	       head_fidelity(head)->log_rmse, fit[0].diffuse, fit[1].diffuse, fit[2].diffuse, fit[0].specular, fit[1].specular,
 	       fit[2].specular);
 }

@@ -133,3 +133,11 @@ int report_usage(const struct command *command, const char *format, ...)
 	line_print(&line);
 	return EXIT_USAGE;
 }
+
+int text_columns(const char *text)
+{
+	int columns = 0;
+	for (; *text; text++)
+		columns += ((unsigned char)*text & 0xc0) != 0x80;
+	return columns;
+}

@@ -31,6 +31,9 @@ int report_usage(const struct command *command, const char *format, ...) __attri
  */
 void error_describe(const bp_error *error, char *text, size_t bytes);
 
+/* Columns that a UTF-8 text without control characters takes: its characters. */
+int text_columns(const char *text);
+
 /* Called before every message when it is not NULL: a progress bar removes itself from the line. */
 extern void (*report_before)(void);
 
