@@ -85,6 +85,14 @@ $(BUILD)/%.o: %.c $(BUILD)/flags
 	$(call SAY,CC    $<)
 	$(Q)$(CC) $(ALL_CFLAGS) -fPIC -c -o $@ $<
 
+# The demo materials' table, as C initialisers.
+$(BUILD)/demo_table.inc: manifests/demo.tsv src/merl/demo_table.awk
+	@mkdir -p $(@D)
+	$(call SAY,AWK   $@)
+	$(Q)awk -f src/merl/demo_table.awk manifests/demo.tsv > $@.part && mv $@.part $@
+$(BUILD)/src/merl/demo.o: $(BUILD)/demo_table.inc
+$(BUILD)/src/merl/demo.o: ALL_CFLAGS += -I$(BUILD)
+
 # With internal symbols, for the tool and the tests.
 $(BUILD)/internal.a: $(LIBRARY_O)
 	$(call SAY,AR    $@)

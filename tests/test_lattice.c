@@ -185,7 +185,7 @@ static void merl_has_its_share_of_cells_below_the_horizon(void **state)
 	(void)state;
 	/* The database: 305,826 cells (20.98 %) are invalid; they lie symmetric in phi_d. */
 	uint8_t *below = malloc(lattice_cells(LATTICE_MERL));
-	assert_int_equal(lattice_below_horizon(LATTICE_MERL, -0.061003, below, NULL), BP_OK);
+	assert_int_equal(lattice_below_horizon(LATTICE_MERL, LATTICE_MERL_HORIZON, below, NULL), BP_OK);
 	size_t count = 0;
 	for (uint32_t i = 0; i < 90; i++)
 		for (uint32_t j = 0; j < 90; j++)

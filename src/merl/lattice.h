@@ -99,6 +99,7 @@ void quarter_cos_sin(double t, double *cosine, double *sine);
  * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere. Fails (as
  * lattice_corner_cosine does) only for dims that are not legal.
  */
+#define LATTICE_MERL_HORIZON -0.061003 /* the database's own limit */
 double lattice_horizon_limit(const struct lattice *lattice);
 bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error);
 

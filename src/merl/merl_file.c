@@ -175,23 +175,11 @@ out:
 	return status;
 }
 
-/* values[count] in the file's units: -1 below the horizon */
-static void chunk_fill(const struct expansion *table, int channel, const uint8_t *below, size_t start, size_t count, double *values)
-{
-	const float *source = table->rgb[channel] + start;
-	const double unit = table->unit, scale = MERL_SCALE[channel];
-	for (size_t n = 0; n < count; n++) {
-		const double value = unit * (double)source[n] / scale;
-		values[n] = value <= DBL_MAX ? value : DBL_MAX; /* a table near the end of the range */
-	}
-	for (size_t n = 0; n < count; n++)
-		if (below[start + n])
-			values[n] = -1;
-}
+/* Fills values[count], in the file's units, from cell `start` of a channel. */
+typedef void chunk_fill_fn(const void *user, int channel, size_t start, size_t count, double *values);
 
-bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error)
+static bp_status planes_write(const char *path, struct lattice_dims dims, chunk_fill_fn *fill, const void *user, bp_error *error)
 {
-	const struct lattice_dims dims = table->dims;
 	const size_t cells = lattice_cells(dims);
 	const int32_t header[3] = {(int32_t)dims.theta_h, (int32_t)dims.theta_d, (int32_t)dims.phi_d};
 	struct output_file file;
@@ -207,7 +195,7 @@ bp_status lattice_write_path(const char *path, const struct expansion *table, co
 	for (int c = 0; c < 3; c++)
 		for (size_t start = 0; start < cells && status == BP_OK; start += CHUNK_VALUES) {
 			const size_t count = cells - start < CHUNK_VALUES ? cells - start : CHUNK_VALUES;
-			chunk_fill(table, c, below, start, count, values);
+			fill(user, c, start, count, values);
 			status = output_file_write(&file, values, count * sizeof *values, error);
 		}
 	if (status == BP_OK)
@@ -216,4 +204,45 @@ out:
 	free(values);
 	output_file_discard(&file);
 	return status;
+}
+
+struct decoded {
+	const struct expansion *table;
+	const uint8_t *below;
+};
+
+static void decoded_fill(const void *user, int channel, size_t start, size_t count, double *values)
+{
+	const struct decoded *decoded = user;
+	const float *source = decoded->table->rgb[channel] + start;
+	const uint8_t *below = decoded->below + start;
+	const double unit = decoded->table->unit, scale = MERL_SCALE[channel];
+	for (size_t n = 0; n < count; n++) {
+		const double value = unit * (double)source[n] / scale;
+		values[n] = value <= DBL_MAX ? value : DBL_MAX; /* a table near the end of the range */
+	}
+	for (size_t n = 0; n < count; n++)
+		if (below[n])
+			values[n] = -1;
+}
+
+bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error)
+{
+	const struct decoded decoded = {table, below};
+	return planes_write(path, table->dims, decoded_fill, &decoded, error);
+}
+
+static void measured_fill(const void *user, int channel, size_t start, size_t count, double *values)
+{
+	const struct lattice *lattice = user;
+	for (size_t n = 0; n < count; n++) {
+		const size_t cell = start + n;
+		const bool told = lattice->valid[cell] || lattice->rgb[0][cell] < 0 || lattice->rgb[1][cell] < 0 || lattice->rgb[2][cell] < 0;
+		values[n] = told ? lattice->rgb[channel][cell] / MERL_SCALE[channel] : -1;
+	}
+}
+
+bp_status lattice_save_path(const char *path, const struct lattice *lattice, bp_error *error)
+{
+	return planes_write(path, lattice->dims, measured_fill, lattice, error);
 }

@@ -36,4 +36,10 @@ bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_use
  */
 bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error);
 
+/*
+ * Writes a lattice as a MERL file: the planes / MERL_SCALE, but -1 in every channel of a cell that is
+ * not valid and negative in none.
+ */
+bp_status lattice_save_path(const char *path, const struct lattice *lattice, bp_error *error);
+
 #endif
