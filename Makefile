@@ -60,7 +60,8 @@ help:
 	@echo "  tests        builds the unit tests"
 	@echo "  check-cli    command-line tests only (tests/cli)"
 	@echo "  check-symbols  every public symbol begins with bp_"
-	@echo "  bench        build, decode, list and verify times beside cat (src/bench)"
+	@echo "  bench        build, decode, list and verify times beside cat (src/bench); run time against error"
+	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  clean        removes $(BUILD)/"
@@ -139,7 +140,28 @@ check-symbols: all
 	$(Q)nm -g --defined-only $(BUILD)/libbrdfpack.a | awk 'NF == 3 && $$3 !~ /^bp_/ {print "libbrdfpack.a exports " $$3; bad = 1} END {exit bad}'
 	$(Q)nm -D --defined-only $(BUILD)/$(SHARED) | awk '$$3 !~ /^bp_/ {print "$(SHARED) exports " $$3; bad = 1} END {exit bad}'
 
-bench: all
+# Run time against error: `make bench BENCH_DATA=FOLDER BENCH_LABEL="what it is"`; without BENCH_DATA the demo set.
+BENCH_OUT    ?= $(BUILD)/bench
+BENCH_LABEL  ?= $(if $(BENCH_DATA),MERL files in $(BENCH_DATA),demo set of brdfpack synth)
+BENCH_FLAGS  ?=
+$(BUILD)/bench/brdfpack-bench: $(BUILD)/src/bench/main.o $(BENCH_PARTS)
+	@[ "$(BENCH_READY)" = yes ] || { echo "the benchmark needs: apt-get install $(BENCH_DEBIAN)"; exit 1; }
+	@mkdir -p $(@D)
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $< $(BENCH_PARTS) $(BENCH_LIBS) $(TOOL_LIBS) $(LIBRARY_LIBS)
+
+bench-ready:
+	@[ "$(BENCH_READY)" = yes ] || { echo "the benchmark needs: apt-get install $(BENCH_DEBIAN)"; exit 1; }
+
+BENCH_RUN = $(BUILD)/bench/brdfpack-bench $(BENCH_FLAGS) -l "$(BENCH_LABEL)" $(or $(BENCH_DATA),$(BUILD)/demo)
+bench-data: all
+	$(Q)[ -n "$(BENCH_DATA)" ] || [ -d $(BUILD)/demo ] || $(BUILD)/brdfpack synth $(BUILD)/demo
+bench-methods bench-quick: bench-ready all
+	$(Q)$(MAKE) --no-print-directory $(BUILD)/bench/brdfpack-bench bench-data
+	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BENCH_RUN) $(if $(filter bench-quick,$@),-q) -o $(BENCH_OUT)/$@.tsv
+	$(Q)scripts/bench_plot.sh $(BENCH_OUT)/$@.tsv $(BENCH_OUT)/$@
+
+bench: all bench-methods
 	$(Q)BRDFPACK=$(abspath $(BUILD)/brdfpack) src/bench/bench_build.sh
 
 $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
@@ -165,5 +187,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench install uninstall clean FORCE
+.PHONY: all help tests check check-unit check-cli check-symbols bench bench-ready bench-data bench-methods bench-quick install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -68,10 +68,10 @@ static void edwards_gives_the_values_worked_out_by_hand(void **state)
 static void the_cells_angles_agree_with_the_directions(void **state)
 {
 	const struct lattice_dims dims = {90, 90, 180};
-	struct angle_tables tables;
+	struct corner_tables tables;
 	(void)state;
 
-	assert_int_equal(angle_tables_alloc(dims, &tables, NULL), BP_OK);
+	assert_int_equal(corner_tables_alloc(dims, &tables, NULL), BP_OK);
 	for (int n = 0; n < 3; n++) {
 		/* 10, 25, 50 degrees lie at 30, 47.43, 67.08; the other two axes on corners */
 		const double at[3][3] = {{30, 30, 60}, {47.43416490252569, 50, 90}, {67.08203932499369, 20, 30}};
@@ -90,7 +90,7 @@ static void the_cells_angles_agree_with_the_directions(void **state)
 	assert_close(a.cos_o, b.cos_o, 1e-12);
 	assert_close(a.cos_h, b.cos_h, 1e-12);
 	assert_close(a.cos_d, b.cos_d, 1e-12);
-	angle_tables_free(&tables);
+	corner_tables_free(&tables);
 }
 
 static struct lattice make_table(const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)

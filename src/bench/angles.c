@@ -4,14 +4,14 @@
 
 #include "../error.h"
 
-bp_status angle_tables_alloc(struct lattice_dims dims, struct angle_tables *out, bp_error *error)
+bp_status corner_tables_alloc(struct lattice_dims dims, struct corner_tables *out, bp_error *error)
 {
 	size_t count = 2 * (size_t)dims.theta_h + 2 * (size_t)dims.theta_d + dims.phi_d;
 	double *values = malloc(count * sizeof *values);
 
 	if (!values)
 		return error_memory(error, count * sizeof *values);
-	*out = (struct angle_tables){.dims = dims, .cos_h = values, .sin_h = values + dims.theta_h};
+	*out = (struct corner_tables){.dims = dims, .cos_h = values, .sin_h = values + dims.theta_h};
 	out->cos_d = out->sin_h + dims.theta_h;
 	out->sin_d = out->cos_d + dims.theta_d;
 	out->cos_p = out->sin_d + dims.theta_d;
@@ -29,7 +29,7 @@ bp_status angle_tables_alloc(struct lattice_dims dims, struct angle_tables *out,
 	return BP_OK;
 }
 
-void angle_tables_free(struct angle_tables *tables)
+void corner_tables_free(struct corner_tables *tables)
 {
 	if (tables)
 		free(tables->cos_h);

@@ -17,20 +17,20 @@ struct cell_angles {
 	double cos_d;        /* of theta_d = the angle between either direction and the half vector */
 };
 
-/* cos and sin of every corner along each axis; freed with angle_tables_free. */
-struct angle_tables {
+/* cos and sin of every corner along each axis; freed with corner_tables_free. */
+struct corner_tables {
 	struct lattice_dims dims;
 	double *cos_h, *sin_h, *cos_d, *sin_d, *cos_p;
 };
 
-bp_status angle_tables_alloc(struct lattice_dims dims, struct angle_tables *out, bp_error *error);
-void angle_tables_free(struct angle_tables *tables);
+bp_status corner_tables_alloc(struct lattice_dims dims, struct corner_tables *out, bp_error *error);
+void corner_tables_free(struct corner_tables *tables);
 
 /*
  * Rusinkiewicz (1998), with phi_h = 0: the half vector is (sin_h, 0, cos_h), wi is (theta_d, phi_d)
  * about it and wo its mirror image, so cos_i, cos_o = cos_h cos_d -+ sin_h sin_d cos_p.
  */
-static inline struct cell_angles cell_angles_at(const struct angle_tables *t, uint32_t i, uint32_t j, uint32_t k)
+static inline struct cell_angles cell_angles_at(const struct corner_tables *t, uint32_t i, uint32_t j, uint32_t k)
 {
 	double a = t->cos_h[i] * t->cos_d[j], b = t->sin_h[i] * t->sin_d[j] * t->cos_p[k];
 

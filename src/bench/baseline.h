@@ -42,6 +42,8 @@ struct baseline {
 	void (*free_state)(void *state); /* NULL is allowed */
 };
 
+/* This project's own profiles. */
+extern const struct baseline BASELINE_PAPER, BASELINE_DEFAULT;
 /* The analytic models: no budget, tens of bytes. */
 extern const struct baseline BASELINE_WARD, BASELINE_COOK_TORRANCE, BASELINE_EDWARDS;
 /* Data-driven models of the paper's authors. */

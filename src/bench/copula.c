@@ -126,7 +126,7 @@ struct search {
 	const double *rgb;
 	struct lattice_dims dims;
 	const struct copula_channel *channel; /* family, turns, marginals */
-	double scale;                         /* of the last evaluation, in the sample's unit */
+	double diffuse, scale;                      /* of the last evaluation, in the sample's unit */
 	struct axis_term terms[3 * LATTICE_EXTENT_MAX]; /* scratch */
 };
 
@@ -145,7 +145,7 @@ static void axis_terms(struct lattice_dims dims, const struct copula_channel *ch
 			*out++ = axis_term(channel->family, alpha, axis_value(channel, axis, n));
 }
 
-/* The cosine-weighted squared error with the best K >= 0: sum w y^2 - (sum w y g)^2 / sum w g^2. */
+/* The cosine-weighted squared error with the best diffuse and K, both >= 0. */
 static double objective(double log_alpha, void *user)
 {
 	struct search *search = user;
@@ -153,7 +153,7 @@ static double objective(double log_alpha, void *user)
 	const struct copula_channel *channel = search->channel;
 	const uint32_t D = search->dims.theta_d, P = search->dims.phi_d;
 	const struct axis_term *term_d = search->terms + search->dims.theta_h, *term_p = term_d + D;
-	double alpha = exp(log_alpha), yy = 0, yg = 0, gg = 0;
+	double alpha = exp(log_alpha), y1 = 0, yy = 0, yg = 0, g1 = 0, gg = 0;
 
 	axis_terms(search->dims, channel, alpha, search->terms);
 	for (size_t n = 0; n < s->count; n++) {
@@ -161,12 +161,15 @@ static double objective(double log_alpha, void *user)
 		double g = (double)(channel->marginal[0][i] * channel->marginal[1][j] * channel->marginal[2][k]) *
 		           density_of(channel->family, alpha, search->terms[i], term_d[j], term_p[k]);
 		double y = search->rgb[n], w = s->weight[n];
+		y1 += w * y;
 		yy += w * y * y;
 		yg += w * y * g;
+		g1 += w * g;
 		gg += w * g * g;
 	}
-	search->scale = gg > 0 && yg > 0 ? yg / gg : 0;
-	return isfinite(gg) ? yy - search->scale * yg : HUGE_VAL;
+	if (!isfinite(gg))
+		return HUGE_VAL;
+	return yy - nonnegative_pair(1, g1, gg, y1, yg, &search->diffuse, &search->scale); /* the weights sum to 1 */
 }
 
 /* Grid over log alpha, then Brent's method (GSL) inside the best bracket. */
@@ -219,6 +222,7 @@ static void fit_channel(struct search *search, struct copula_channel *channel, d
 			best.alpha = (float)exp(log_alpha);
 			objective(log((double)best.alpha), search);
 			best.scale = (float)(search->scale * unit);
+			best.diffuse = (float)(search->diffuse * unit);
 		}
 	search->channel = NULL;
 	*channel = best;
@@ -266,7 +270,7 @@ static size_t copula_parameters(const void *opaque)
 {
 	const struct lattice_dims dims = ((const struct copula_state *)opaque)->dims;
 
-	return 3 * ((size_t)dims.theta_h + dims.theta_d + dims.phi_d + 2);
+	return 3 * ((size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3);
 }
 
 static size_t copula_bytes(const void *state)
@@ -298,7 +302,7 @@ static bp_status copula_expand(const void *opaque, struct expansion *out, bp_err
 					double f = (double)(channel->scale * channel->marginal[0][i] * channel->marginal[1][j] * channel->marginal[2][k]);
 					if (f > 0)
 						f *= density_of(channel->family, (double)channel->alpha, terms[i], term_d[j], term_p[k]);
-					out->rgb[c][lattice_index(dims, i, j, k)] = (float)finite_or_zero(f);
+					out->rgb[c][lattice_index(dims, i, j, k)] = channel->diffuse + (float)finite_or_zero(f);
 				}
 	}
 	free(terms);
@@ -322,7 +326,9 @@ static void copula_evaluate(const void *opaque, const double wi[3], const double
 			f *= f0 + x * (f1 - f0);
 			u[axis] = u0 + x * (u1 - u0);
 		}
-		rgb[c] = f > 0 ? finite_or_zero(f * copula_density(channel->family, (double)channel->alpha, u[0], u[1], u[2])) : 0;
+		if (f > 0)
+			f *= copula_density(channel->family, (double)channel->alpha, u[0], u[1], u[2]);
+		rgb[c] = (double)channel->diffuse + finite_or_zero(f);
 	}
 }
 

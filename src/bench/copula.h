@@ -2,7 +2,7 @@
  * copula.h: A. Ozturk, M. Kurt, A. Bilgili, "A copula-based BRDF model", Computer Graphics Forum 29(6), 2010:
  * a channel is a density over (theta_h, theta_d, phi_d) with its own three marginals and an Archimedean copula:
  *
- *     f = K f_h f_d f_phi c(u, v, w; alpha)         u, v, w = F_h, F_d, F_phi (or 1 - F, see below)
+ *     f = diffuse + K f_h f_d f_phi c(u, v, w; alpha)         u, v, w = F_h, F_d, F_phi (or 1 - F, see below)
  *
  * Densities of three variables, from c = psi'''(t) (psi^-1)'(u) (psi^-1)'(v) (psi^-1)'(w), t = sum of psi^-1:
  *
@@ -12,10 +12,11 @@
  *
  * alpha > 0; alpha -> 0 is independence. In three variables these families know positive dependence only, so any of
  * the axes may be turned round (u = 1 - F), which also covers the negative one. Family, turns and alpha minimise the
- * cosine-weighted error of lobe.h; K is then a linear least-squares factor.
+ * cosine-weighted error of lobe.h, with the two linear parameters at their least-squares values >= 0 (diffuse and
+ * specular, as the authors have it in 2012; without the diffuse one the model does worse).
  *
  * Marginals are the means over the other two axes of the table with its invalid cells filled (log_tensor.h).
- * Per channel H + D + P + 2 float32 and one byte for family and turns; MERL: 1086 numbers and 3 bytes, 4347 bytes.
+ * Per channel H + D + P + 3 float32 and one byte for family and turns; MERL: 1089 numbers and 3 bytes, 4359 bytes.
  */
 #ifndef BENCH_COPULA_H
 #define BENCH_COPULA_H
@@ -27,7 +28,7 @@ enum copula_family { COPULA_FRANK, COPULA_CLAYTON, COPULA_FAMILIES };
 struct copula_channel {
 	enum copula_family family;
 	unsigned turned; /* bit a: axis a is turned round */
-	float alpha, scale;
+	float alpha, diffuse, scale;
 	float *marginal[3]; /* mean 1 (all 0 for a black channel), per axis: H, D, P values */
 	double *cumulative[3]; /* F at the middle of each cell, derived from the marginal */
 };

@@ -27,8 +27,7 @@ static double free_from_shape(const struct lobe_axis *axis, double shape)
 }
 
 /*
- * E^2 in the sample's unit, minimised over albedos >= 0. With basis functions p = 1/pi and l = the lobe:
- * normal equations of two unknowns; where the free optimum leaves the quadrant, the better edge.
+ * E^2 in the sample's unit, minimised over albedos >= 0 of the functions p = 1/pi and l = the lobe.
  */
 static double project(struct search *search, const double *shape)
 {
@@ -49,23 +48,8 @@ static double project(struct search *search, const double *shape)
 	}
 	if (!isfinite(l2))
 		return HUGE_VAL;
-	for (int c = 0; c < 3; c++) {
-		double pp = p * p, pl = p * l1, py = p * y1[c], det = pp * l2 - pl * pl, a = 0, b = 0;
-		if (det > 1e-13 * pp * l2) {
-			a = (py * l2 - yl[c] * pl) / det;
-			b = (yl[c] * pp - py * pl) / det;
-		}
-		if (!(det > 1e-13 * pp * l2) || a < 0 || b < 0) {
-			double only_a = fmax(0, py / pp), only_b = l2 > 0 ? fmax(0, yl[c] / l2) : 0;
-			if (py * only_a >= yl[c] * only_b)
-				a = only_a, b = 0;
-			else
-				a = 0, b = only_b;
-		}
-		search->diffuse[c] = a;
-		search->specular[c] = b;
-		sum += fmax(0, y2[c] - 2 * (a * py + b * yl[c]) + a * a * pp + 2 * a * b * pl + b * b * l2);
-	}
+	for (int c = 0; c < 3; c++)
+		sum += fmax(0, y2[c] - nonnegative_pair(p * p, p * l1, l2, p * y1[c], yl[c], &search->diffuse[c], &search->specular[c]));
 	return sum;
 }
 
@@ -155,6 +139,7 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 	struct start starts[STARTS_KEPT];
 	struct lobe_state *out = calloc(1, sizeof *out);
 	double best = HUGE_VAL;
+	int chosen = 0;
 	bp_status status;
 
 	if (!out)
@@ -166,24 +151,23 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 		thin = (struct lobe_sample){0}; /* so few valid cells: the dense sample serves for both */
 	search.sample = thin.count ? &thin : &dense;
 	search_grid(&search, starts);
-	search.sample = &dense;
 	for (int n = 0; n < STARTS_KEPT; n++) {
-		double shape[LOBE_SHAPE_MAX], found = HUGE_VAL;
-		if (!isfinite(starts[n].error))
-			continue;
-		if ((status = descend(&search, starts[n].x, &found, error)))
+		double found = HUGE_VAL;
+		if (isfinite(starts[n].error) && (status = descend(&search, starts[n].x, &found, error)))
 			goto out;
-		if (!(found < best))
-			continue;
-		best = found;
-		shape_from_free(model, starts[n].x, shape);
-		for (int a = 0; a < model->shape_count; a++)
-			out->shape[a] = (float)shape[a];
+		if (found < best) {
+			best = found;
+			chosen = n;
+		}
 	}
+	search.sample = &dense;
+	if ((status = descend(&search, starts[chosen].x, &best, error)))
+		goto out;
 	/* the albedos that go with the shape as it is stored */
 	double shape[LOBE_SHAPE_MAX];
+	shape_from_free(model, starts[chosen].x, shape);
 	for (int a = 0; a < model->shape_count; a++)
-		shape[a] = out->shape[a];
+		shape[a] = out->shape[a] = (float)shape[a];
 	out->error = sqrt(project(&search, shape)) * dense.unit;
 	for (int c = 0; c < 3; c++) {
 		out->diffuse[c] = (float)(search.diffuse[c] * dense.unit);
@@ -226,8 +210,8 @@ bp_status lobe_expand(const void *opaque, struct expansion *out, bp_error *error
 {
 	const struct lobe_state *state = opaque;
 	const struct lattice_dims dims = out->dims;
-	struct angle_tables tables;
-	bp_status status = angle_tables_alloc(dims, &tables, error);
+	struct corner_tables tables;
+	bp_status status = corner_tables_alloc(dims, &tables, error);
 
 	if (status)
 		return status;
@@ -240,7 +224,7 @@ bp_status lobe_expand(const void *opaque, struct expansion *out, bp_error *error
 				for (int c = 0; c < 3; c++)
 					out->rgb[c][cell] = (float)(state->diffuse[c] / M_PI + state->specular[c] * lobe);
 			}
-	angle_tables_free(&tables);
+	corner_tables_free(&tables);
 	return BP_OK;
 }
 

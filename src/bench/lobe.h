@@ -15,9 +15,9 @@
  * both orders of the two directions, cos^2 is the mean of cos^2 theta_i and cos^2 theta_o.
  *
  * For a given shape the best albedos are a linear least-squares problem with two unknowns >= 0
- * (variable projection), so the search runs over the shape alone: a grid of starts on a thin sample
- * of cells, then Nelder-Mead (GSL nmsimplex2) from the best three on a denser one. The sample takes every
- * theta_h and a regular stride of theta_d and phi_d: nothing is random.
+ * (variable projection), so the search runs over the shape alone: a grid of starts and Nelder-Mead (GSL
+ * nmsimplex2) from the best three on a thin sample of cells, then from the best of these on a denser one. A sample
+ * takes every theta_h and a regular stride of theta_d and phi_d: nothing is random.
  */
 #ifndef BENCH_LOBE_H
 #define BENCH_LOBE_H

@@ -29,10 +29,10 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 	const struct lattice_dims dims = lattice->dims;
 	size_t most = (size_t)dims.theta_h * ((dims.theta_d + stride_d - 1) / stride_d) * ((dims.phi_d + stride_p - 1) / stride_p);
 	size_t bytes = most * (sizeof(struct cell_angles) + 4 * sizeof(double) + sizeof(uint32_t));
-	struct angle_tables tables;
+	struct corner_tables tables;
 	struct lobe_sample sample = {.unit = 0};
 	double weight_sum = 0;
-	bp_status status = angle_tables_alloc(dims, &tables, error);
+	bp_status status = corner_tables_alloc(dims, &tables, error);
 
 	if (status)
 		return status;
@@ -79,8 +79,24 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 	sample.angles = NULL;
 out:
 	free(sample.angles);
-	angle_tables_free(&tables);
+	corner_tables_free(&tables);
 	return status;
+}
+
+double nonnegative_pair(double pp, double pl, double ll, double py, double ly, double *a, double *b)
+{
+	double det = pp * ll - pl * pl;
+	bool independent = det > 1e-13 * pp * ll;
+
+	*a = independent ? (py * ll - ly * pl) / det : 0;
+	*b = independent ? (ly * pp - py * pl) / det : 0;
+	if (!independent || *a < 0 || *b < 0) { /* the better edge of the quadrant */
+		double only_a = fmax(0, py / pp), only_b = ll > 0 ? fmax(0, ly / ll) : 0;
+		bool first = py * only_a >= ly * only_b;
+		*a = first ? only_a : 0;
+		*b = first ? 0 : only_b;
+	}
+	return 2 * (*a * py + *b * ly) - *a * *a * pp - 2 * *a * *b * pl - *b * *b * ll;
 }
 
 void lobe_sample_free(struct lobe_sample *sample)

@@ -18,6 +18,12 @@ struct lobe_sample {
 /* Every theta_h, every stride_d-th theta_d and every stride_p-th phi_d, valid, both angles at most 80 degrees. */
 bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uint32_t stride_p, struct lobe_sample *out,
                            bp_error *error);
+/*
+ * min |y - a p - b l|^2 over a, b >= 0, from the inner products of the functions p, l and of both with y (pp > 0).
+ * Returns by how much the square falls below |y|^2: 2 (a py + b ly) - a^2 pp - 2 a b pl - b^2 ll >= 0.
+ */
+double nonnegative_pair(double pp, double pl, double ll, double py, double ly, double *a, double *b);
+
 void lobe_sample_free(struct lobe_sample *sample);
 
 #endif

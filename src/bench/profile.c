@@ -1,0 +1,113 @@
+/*
+ * profile.c: this project's own records, through the same functions as `brdfpack build` and `extract`.
+ *
+ * fit = record_pack (which also decodes and measures every layer); decode = record_head_parse, record_decode,
+ * model_expand. The bytes are the whole record's.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "../codec/record.h"
+#include "../error.h"
+#include "baseline.h"
+
+struct profile_state {
+	uint8_t *record;
+	size_t bytes;
+	struct record_head head;
+};
+
+static void profile_free(void *opaque)
+{
+	struct profile_state *state = opaque;
+
+	if (state)
+		free(state->record);
+	free(state);
+}
+
+static bp_status fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
+{
+	const struct profile_state *state = user;
+
+	if (offset > state->bytes || count > state->bytes - offset)
+		return error_set(error, BP_ERROR_CORRUPT, offset, "the record ends before");
+	memcpy(bytes, state->record + offset, count);
+	return BP_OK;
+}
+
+static bp_status fit_profile(enum profile profile, const struct bench_material *material, size_t budget_bytes, void **out,
+                             bp_error *error)
+{
+	const struct fit_options options = {.profile = profile, .budget_bytes = (uint32_t)budget_bytes, .effort = 5};
+	const struct record_source source = {.bytes = material->raw_bytes};
+	struct profile_state *state = calloc(1, sizeof *state);
+	bp_status status;
+
+	if (!state)
+		return error_memory(error, sizeof *state);
+	status = record_pack(material->lattice, material->name, &source, &options, &state->record, &state->bytes, &state->head, error);
+	if (status)
+		profile_free(state);
+	else
+		*out = state;
+	return status;
+}
+
+static bp_status paper_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+{
+	return fit_profile(PROFILE_PAPER, material, budget_bytes, state, error);
+}
+
+static bp_status default_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+{
+	return fit_profile(PROFILE_DEFAULT, material, budget_bytes, state, error);
+}
+
+static size_t profile_bytes(const void *state)
+{
+	return ((const struct profile_state *)state)->bytes;
+}
+
+static size_t profile_parameters(const void *state)
+{
+	(void)state;
+	return 0;
+}
+
+static bp_status profile_expand(const void *opaque, struct expansion *out, bp_error *error)
+{
+	struct profile_state *state = (struct profile_state *)(uintptr_t)opaque; /* fetch only reads it */
+	struct record_head head;
+	struct model *model = NULL;
+	bp_status status;
+
+	if ((status = record_head_parse(state->record, state->bytes, &head, error)) ||
+	    (status = record_decode(&head, 0, fetch, state, &model, error)))
+		return status;
+	status = model_expand(model, 0, out, error);
+	model_free(model);
+	return status;
+}
+
+const struct baseline BASELINE_PAPER = {
+	.name = "paper",
+	.reference = "this project, --profile paper: Bilgili et al. 2012, pair copulas and wavelets",
+	.budgeted = true,
+	.fit = paper_fit,
+	.bytes = profile_bytes,
+	.parameters = profile_parameters,
+	.expand = profile_expand,
+	.free_state = profile_free,
+};
+
+const struct baseline BASELINE_DEFAULT = {
+	.name = "default",
+	.reference = "this project, the default profile",
+	.budgeted = true,
+	.fit = default_fit,
+	.bytes = profile_bytes,
+	.parameters = profile_parameters,
+	.expand = profile_expand,
+	.free_state = profile_free,
+};
