@@ -55,6 +55,10 @@ struct kernels {
 	void (*fidelity_slice)(const double *b, const float *e, const uint8_t *valid, const float *cosine, size_t n, double unit,
 	                       struct fidelity_sums *sums);
 
+	/* out = row column dphi (NULL: 1), of paper_expand.c; and rgb = max(0, diffuse + specular achromatic). */
+	void (*paper_row)(float row, const float *column, const float *dphi, size_t n, float *out);
+	void (*paper_colour)(const float *achromatic, size_t n, const float diffuse[3], const float specular[3], float *const rgb[3]);
+
 	/*
 	 * With v = |y - line| (1 + excess) of every observation: *below = how many are < low; copies those in [low, high] to
 	 * inside (n + 1 long) and returns how many they are.
@@ -64,6 +68,13 @@ struct kernels {
 	/* The weighted sums with u = (y - line) (1 + excess) inverse_scale. Blocks of 512 in four lanes, blocks compensated. */
 	void (*robust_sums)(const struct robust_sample *sample, const struct robust_line *line, double inverse_scale,
 	                    struct robust_sums *out);
+
+	/*
+	 * value = factor (r + g + b) where valid, else 0, for the n cells of a row; adds them to column_sum and the valid
+	 * ones to column_count; *count = the valid ones. Returns their sum, in four lanes.
+	 */
+	double (*density_row)(const double *const rgb[3], const uint8_t *valid, size_t n, double factor, double *value,
+	                      double *column_sum, uint32_t *column_count, uint32_t *count);
 
 	/* The steps of fill.h; scratch holds two rows and four cells. */
 	size_t (*fill_halve)(const struct fill_level *fine, const struct fill_level *coarse);

@@ -2,15 +2,20 @@
 #include "kernels.h"
 #include "vector.h"
 
+#include "density.inc.h"
 #include "fidelity.inc.h"
 #include "fill.inc.h"
+#include "paper.inc.h"
 #include "robust.inc.h"
 
 const struct kernels KERNEL(kernels) = {
+	.density_row = KERNEL(density_row),
 	.fidelity_slice = KERNEL(fidelity_slice),
 	.fill_halve = KERNEL(fill_halve),
 	.fill_interpolate = KERNEL(fill_interpolate),
 	.fill_smooth = KERNEL(fill_smooth),
+	.paper_row = KERNEL(paper_row),
+	.paper_colour = KERNEL(paper_colour),
 	.robust_scale = KERNEL(robust_scale),
 	.robust_sums = KERNEL(robust_sums),
 };

@@ -6,6 +6,7 @@
 
 #include "../error.h"
 #include "kernels.h"
+#include "select.h"
 
 static const double TUNING = 4.685, MAD_TO_SIGMA = 0.6745, LEVERAGE_MAX = 0.9999;
 
@@ -20,48 +21,6 @@ struct design {
 };
 
 /* ---- order statistics ---- */
-
-static void swap(double *a, double *b)
-{
-	double t = *a;
-	*a = *b;
-	*b = t;
-}
-
-/* Rearranges v[0..n-1] so that v[k] is the k-th smallest, and returns it (Hoare's selection, median of three). */
-static double select_kth(double *v, size_t n, size_t k)
-{
-	size_t left = 0, right = n - 1;
-
-	while (left < right) {
-		size_t middle = left + (right - left) / 2;
-		if (v[middle] < v[left])
-			swap(&v[middle], &v[left]);
-		if (v[right] < v[left])
-			swap(&v[right], &v[left]);
-		if (v[right] < v[middle])
-			swap(&v[right], &v[middle]);
-		const double pivot = v[middle];
-		size_t i = left, j = right;
-		for (;;) {
-			while (v[i] < pivot)
-				i++;
-			while (pivot < v[j])
-				j--;
-			if (i >= j)
-				break;
-			swap(&v[i], &v[j]);
-			i++;
-			j--;
-		}
-		/* v[left..j] <= pivot <= v[j+1..right] */
-		if (k <= j)
-			right = j;
-		else
-			left = j + 1;
-	}
-	return v[k];
-}
 
 /* The mean of the order statistics k and k2 (k2 = k or k + 1) of v. */
 static double select_middle(double *v, size_t n, size_t k, size_t k2)

@@ -1,0 +1,80 @@
+/* model.c: from the profile's number to the profile's functions. */
+#include "model.h"
+
+#include <stdlib.h>
+
+#include "../error.h"
+#include "paper.h"
+#if __has_include("default_model.h")
+#include "default_model.h"
+#define HAVE_DEFAULT 1
+#else
+#define HAVE_DEFAULT 0
+#endif
+
+bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error)
+{
+	struct model *model;
+	bp_status status;
+
+	if (!lattice_dims_legal(lattice->dims))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a lattice of %u x %u x %u cells: 4 to %d each, at most %d in all",
+		                 lattice->dims.theta_h, lattice->dims.theta_d, lattice->dims.phi_d, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
+	if (!lattice->valid_count)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: every value is negative, NaN or infinite");
+	model = calloc(1, sizeof *model);
+	if (!model)
+		return error_memory(error, sizeof *model);
+	model->profile = options->profile;
+	model->dims = lattice->dims;
+	model->horizon_limit = lattice_horizon_limit(lattice);
+	switch (options->profile) {
+	case PROFILE_PAPER:
+		status = paper_fit(lattice, options, model, error);
+		break;
+#if HAVE_DEFAULT
+	case PROFILE_DEFAULT:
+		status = default_fit(lattice, options, model, error);
+		break;
+#endif
+	default:
+		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
+	}
+	if (status)
+		model_free(model);
+	else
+		*out = model;
+	return status;
+}
+
+void model_free(struct model *model)
+{
+	if (!model)
+		return;
+	paper_free(model->paper);
+#if HAVE_DEFAULT
+	default_free(model->log_density);
+#endif
+	free(model);
+}
+
+bp_status model_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+{
+	const struct lattice_dims a = model->dims, b = out->dims;
+
+	if (a.theta_h != b.theta_h || a.theta_d != b.theta_d || a.phi_d != b.phi_d)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the table has %u x %u x %u cells, the model %u x %u x %u", b.theta_h,
+		                 b.theta_d, b.phi_d, a.theta_h, a.theta_d, a.phi_d);
+	if (!layers || layers > model->layer_count)
+		layers = model->layer_count;
+	switch (model->profile) {
+	case PROFILE_PAPER:
+		return paper_expand(model, layers, out, error);
+#if HAVE_DEFAULT
+	case PROFILE_DEFAULT:
+		return default_expand(model, layers, out, error);
+#endif
+	default:
+		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)model->profile);
+	}
+}
