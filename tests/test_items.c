@@ -1,4 +1,4 @@
-/* The set of materials of a build, its scratch file, the progress line, and nearest names. */
+/* The set of materials of a build, its scratch file, and the progress line. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,48 +8,32 @@
 
 #include "tool/items.h"
 #include "tool/progress.h"
-#include "tool/selection.h"
 #include "tool/spool.h"
 
-static void two_items_of_one_name_are_refused_with_both_paths(void **state)
+static void items_are_sorted_by_the_bytes_of_their_names(void **state)
 {
 	(void)state;
 	struct items items = {0};
 	bp_error error;
-	assert_int_equal(items_add(&items, "gold", "a/gold.binary", 1, &error), BP_OK);
-	assert_int_equal(items_add(&items, "gold", "b/gold.binary", 1, &error), BP_ERROR_BAD_INPUT);
-	assert_non_null(strstr(error.message, "a/gold.binary")); /* the other path is the caller's to put in front */
-	assert_int_equal(items.count, 1);
-	items_free(&items);
-}
-
-static void illegal_names_are_refused(void **state)
-{
-	(void)state;
-	static const char *const names[] = {"", ".", "..", "a/b", "a\nb", "\xff"};
-	struct items items = {0};
-	bp_error error;
-	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-		assert_int_equal(items_add(&items, names[i], "path", 1, &error), BP_ERROR_BAD_INPUT);
-	assert_int_equal(items.count, 0);
-	items_free(&items);
-}
-
-static void thousands_of_items_are_sorted_and_still_found(void **state)
-{
-	(void)state;
-	struct items items = {0};
-	bp_error error;
-	char name[32];
-	for (int i = 0; i < 5000; i++) {
-		snprintf(name, sizeof name, "m%d", (i * 7919) % 5000); /* 7919 is prime to 5000: every number once */
-		assert_int_equal(items_add(&items, name, "p", 1, &error), BP_OK);
+	char names[1000][16];
+	for (int i = 0; i < 1000; i++) {
+		snprintf(names[i], sizeof names[i], "m%d", (i * 7919) % 1000); /* 7919 is prime to 1000: every number once */
+		assert_int_equal(items_add(&items, &(struct source_item){.name = names[i], .path = names[i]}, false, &error), BP_OK);
 	}
 	items_sort(&items);
 	for (size_t i = 1; i < items.count; i++)
-		assert_true(strcmp(items.item[i - 1].name, items.item[i].name) < 0);
-	assert_int_equal(items_add(&items, "m4321", "p", 1, &error), BP_ERROR_BAD_INPUT);
+		assert_true(strcmp(items.item[i - 1].source.name, items.item[i].source.name) < 0);
 	items_free(&items);
+}
+
+static void a_label_names_container_and_member(void **state)
+{
+	(void)state;
+	char label[ITEM_LABEL_BYTES], path[] = "a.zip", member[] = "x/gold.binary";
+	item_label(&(struct item){.source = {.path = path}}, label);
+	assert_string_equal(label, "a.zip");
+	item_label(&(struct item){.source = {.path = path, .member = member}}, label);
+	assert_string_equal(label, "a.zip: x/gold.binary");
 }
 
 static void the_spool_gives_back_what_was_added(void **state)
@@ -86,24 +70,13 @@ static void the_progress_line_fits_the_terminal(void **state)
 	assert_non_null(strstr(text, "-:-- left"));
 }
 
-static void the_distance_of_names_counts_edits(void **state)
-{
-	(void)state;
-	assert_int_equal(name_distance("kitten", "sitting", 9), 3);
-	assert_int_equal(name_distance("", "abc", 9), 3);
-	assert_int_equal(name_distance("gold", "gold", 9), 0);
-	assert_int_equal(name_distance("kitten", "sitting", 2), 3); /* more than two: stops counting */
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(two_items_of_one_name_are_refused_with_both_paths),
-		cmocka_unit_test(illegal_names_are_refused),
-		cmocka_unit_test(thousands_of_items_are_sorted_and_still_found),
+		cmocka_unit_test(items_are_sorted_by_the_bytes_of_their_names),
+		cmocka_unit_test(a_label_names_container_and_member),
 		cmocka_unit_test(the_spool_gives_back_what_was_added),
 		cmocka_unit_test(the_progress_line_fits_the_terminal),
-		cmocka_unit_test(the_distance_of_names_counts_edits),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,7 +38,7 @@ static bp_status work(void *user, const struct job *job, int fd, uint8_t **recor
 {
 	(void)user;
 	if (!strcmp(job->name, "bad"))
-		return error_set(error, BP_ERROR_BAD_INPUT, 17, "found %s", job->path);
+		return error_set(error, BP_ERROR_BAD_INPUT, 17, "found %s", job->name);
 	if (!strcmp(job->name, "crash") || (!strcmp(job->name, "crash-once") && job->attempt == 1)) {
 		signal(SIGSEGV, SIG_DFL);
 		raise(SIGSEGV);
@@ -74,7 +74,7 @@ static void submit(struct workers *workers, unsigned number, const char *name)
 {
 	while (!workers_idle(workers))
 		workers_wait(workers, -1);
-	struct job job = {.number = number, .name = name, .path = "somewhere", .slot = -1};
+	struct job job = {.number = number, .name = name, .slot = -1};
 	workers_submit(workers, &job);
 }
 
@@ -114,7 +114,7 @@ static void an_error_comes_back_with_its_offset(void **state)
 	finish(workers);
 	assert_int_equal(seen.error[0].status, BP_ERROR_BAD_INPUT);
 	assert_int_equal(seen.error[0].offset, 17);
-	assert_string_equal(seen.error[0].message, "found somewhere");
+	assert_string_equal(seen.error[0].message, "found bad");
 	assert_int_equal(seen.error[1].status, BP_OK);
 }
 
@@ -172,7 +172,7 @@ static void a_slot_carries_bytes_also_to_the_second_attempt(void **state)
 	struct workers *workers = start(2, 3);
 	int slot = workers_slot_take(workers);
 	assert_int_equal(pwrite(workers_slot_fd(workers, slot), "in the slot", 11, 0), 11);
-	struct job job = {.number = 0, .name = "crash-once", .path = "a.zip: x", .slot = slot, .slot_bytes = 11};
+	struct job job = {.number = 0, .name = "crash-once", .slot = slot, .slot_bytes = 11};
 	workers_submit(workers, &job);
 	int other = workers_slot_take(workers), third = workers_slot_take(workers);
 	assert_int_not_equal(other, slot);
@@ -196,13 +196,13 @@ static void stopping_does_not_wait_for_the_work(void **state)
 	workers_stop(NULL);
 }
 
-static void a_path_that_is_too_long_is_an_error_of_that_job(void **state)
+static void a_name_that_is_too_long_is_an_error_of_that_job(void **state)
 {
 	(void)state;
-	static char path[WORKER_PATH_BYTES_MAX + 10];
+	char name[WORKER_NAME_BYTES_MAX + 10] = "";
 	struct workers *workers = start(1, 0);
-	memset(path, 'p', sizeof path - 1);
-	struct job job = {.number = 0, .name = "a", .path = path, .slot = -1};
+	memset(name, 'p', sizeof name - 1);
+	struct job job = {.number = 0, .name = name, .slot = -1};
 	workers_submit(workers, &job);
 	finish(workers);
 	assert_int_equal(seen.error[0].status, BP_ERROR_BAD_INPUT);
@@ -225,7 +225,7 @@ int main(void)
 		cmocka_unit_test(a_worker_that_writes_nonsense_is_stopped),
 		cmocka_unit_test(a_slot_carries_bytes_also_to_the_second_attempt),
 		cmocka_unit_test(stopping_does_not_wait_for_the_work),
-		cmocka_unit_test(a_path_that_is_too_long_is_an_error_of_that_job),
+		cmocka_unit_test(a_name_that_is_too_long_is_an_error_of_that_job),
 		cmocka_unit_test(at_least_one_core_is_usable),
 	};
 	signal(SIGPIPE, SIG_IGN);

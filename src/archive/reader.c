@@ -82,7 +82,7 @@ static bp_status file_open(const char *path, int *fd, uint64_t *file_bytes, bp_e
 	if (*fd < 0 || fstat(*fd, &found) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
 	if (!S_ISREG(found.st_mode))
-		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "not a regular file, so not a brdfpack archive");
+		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "not a regular file");
 	*file_bytes = (uint64_t)found.st_size;
 	return BP_OK;
 }

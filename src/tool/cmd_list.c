@@ -7,6 +7,7 @@
 #include "../merl/sha256.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 struct totals {
@@ -24,13 +25,23 @@ static int widest_name(struct selection *selection)
 	return widest;
 }
 
+/* A number in nine columns: plain where four decimals say enough, else in powers of ten. */
+static void number_print(double value)
+{
+	double size = fabs(value);
+	printf(size == 0 || (size >= 5e-4 && size < 9999) ? " %9.4f" : " %9.2e", value);
+}
+
 static void row_print(const struct record_head *head, int width)
 {
-	const struct colour_fit *fit = head->colour;
-	printf("%s%*s %9" PRIu32 "  %-7s %6" PRIu32 "  %8.5f  %8.4f %8.4f %8.4f  %8.4f %8.4f %8.4f\n", head->name,
-	       width - text_columns(head->name), "", head->record_bytes, profile_name(head->profile), head->layer_count,
-	       head_fidelity(head)->log_rmse, fit[0].diffuse, fit[1].diffuse, fit[2].diffuse, fit[0].specular, fit[1].specular,
-	       fit[2].specular);
+	printf("%s%*s %9" PRIu32 "  %-7s %6" PRIu32 "  %8.5f ", head->name, width - text_columns(head->name), "", head->record_bytes,
+	       profile_name(head->profile), head->layer_count, head_fidelity(head)->log_rmse);
+	for (int c = 0; c < 3; c++)
+		number_print(head->colour[c].diffuse);
+	putchar(' ');
+	for (int c = 0; c < 3; c++)
+		number_print(head->colour[c].specular);
+	putchar('\n');
 }
 
 static const char *section_name(unsigned type)
@@ -137,7 +148,7 @@ static int list_main(const struct command *self, int argc, char **argv)
 		return EXIT_FAILED;
 	if (selection.all && !json) {
 		width = widest_name(&selection);
-		printf("%-*s %9s  %-7s %6s  %8s  %-26s  %s\n", width, "material", "bytes", "profile", "layers", "log RMSE",
+		printf("%-*s %9s  %-7s %6s  %8s   %-29s   %s\n", width, "material", "bytes", "profile", "layers", "log RMSE",
 		       "diffuse R, G, B (1/sr)", "specular R, G, B");
 	}
 	for (uint64_t i = 0; i < selection.count && !ferror(stdout); i++) {

@@ -17,7 +17,11 @@
 
 /* A new command is one cmd_NAME.c and one line here, in the order `help` shows them. */
 #define COMMANDS(X) \
-	X(list)
+	X(build)    \
+	X(list)     \
+	X(extract)  \
+	X(verify)   \
+	X(synth)
 
 #define DECLARE(name) extern const struct command command_##name;
 COMMANDS(DECLARE)

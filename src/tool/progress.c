@@ -63,7 +63,7 @@ void progress_format(char *text, size_t bytes, int columns, uint64_t done, uint6
 
 	int width = columns - (int)strlen(tail) - 3;
 	width = width > 40 ? 40 : width;
-	if (width < 8) {
+	if (width < 8 || fraction < 0) {
 		snprintf(text, bytes, "%.*s", columns > 1 ? columns - 1 : 0, tail + 1);
 		return;
 	}

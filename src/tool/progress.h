@@ -13,7 +13,7 @@ void progress_start(bool wanted);
 
 /*
  * `done` of `total` materials are finished (total 0: not known, as in a stream); `fraction` of
- * the input's bytes is read (0..1). Redraws at most ten times a second.
+ * the work is done (0..1; negative: not known, and no bar is drawn). Redraws at most ten times a second.
  */
 void progress_show(uint64_t done, uint64_t total, double fraction);
 

@@ -100,6 +100,8 @@ void report_error(const char *file, const char *material, const bp_error *error)
 	struct line line = {.used = 0};
 	char text[1024];
 	error_describe(error, text, sizeof text);
+	if (file && !material && !strncmp(text, file, strlen(file)) && text[strlen(file)] == ':')
+		file = NULL; /* what writes files names them itself */
 	line_add_where(&line, file, material);
 	line_add(&line, text);
 	line_print(&line);

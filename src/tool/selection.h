@@ -32,7 +32,4 @@ void selection_close(struct selection *selection);
 /* The index entry of the n-th selected material. A walk over all reads every index page once. */
 bp_status selection_entry(struct selection *selection, uint64_t n, struct index_entry *entry, bp_error *error);
 
-/* Edits (insert, delete, replace a byte) that lead from a to b; at most `most` + 1 is counted. */
-size_t name_distance(const char *a, const char *b, size_t most);
-
 #endif

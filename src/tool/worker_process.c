@@ -1,18 +1,18 @@
 /*
  * worker_process.c: one worker process and its two pipes: the protocol.
  *
- *     parent --- jobs ----> worker      one struct job_frame, then name_bytes + path_bytes
+ *     parent --- jobs ----> worker      one struct job_frame, then the name
  *     parent <-- results -- worker      one struct result_frame, then message_bytes + record_bytes
  *
  * Order. The parent sends a job only to a worker that has none, and the worker answers every
  * job with one result, in order. So the job pipe is empty when a job is written, a job frame
- * (at most 4.5 KB) always fits into it, and that write never blocks. Results are read as they
+ * (300 bytes) always fits into it, and that write never blocks. Results are read as they
  * come, without blocking, into a buffer per worker. Both ends are the same program, so frames
  * are plain structs; the parent still checks magic, number and lengths, because a worker that
  * was hurt by a bad file may write anything. One that does is killed, as if it had died.
  *
- * Data. A worker opens plain files itself. Members of tar and zip are copied by the parent into
- * a slot, a memory file that every worker inherits; the job names the slot. The worker only
+ * Data. A worker opens files itself: the list of them is older than its fork. What only the parent can
+ * read, because it comes one after another in a stream, it copies into a slot, a memory file that every worker inherits; the job names the slot. The worker only
  * reads it, so the data outlive the worker and a second attempt needs no second copy.
  *
  * Closing. Each child closes every descriptor of its siblings' pipes, so the parent's end of a
@@ -46,7 +46,7 @@ struct job_frame {
 	uint32_t magic, attempt;
 	uint64_t number, slot_bytes;
 	int32_t slot;
-	uint32_t name_bytes, path_bytes; /* with their NULs */
+	uint32_t name_bytes; /* with the NUL */
 };
 
 struct result_frame {
@@ -88,13 +88,12 @@ static bool write_whole(int fd, const void *bytes, size_t count)
 static _Noreturn void worker_main(const struct worker_setup *setup, int job_fd, int result_fd)
 {
 	struct job_frame in;
-	static char name[256], path[WORKER_PATH_BYTES_MAX];
+	char name[WORKER_NAME_BYTES_MAX + 1];
 
 	while (read_whole(job_fd, &in, sizeof in)) {
-		if (in.magic != JOB_MAGIC || in.name_bytes > sizeof name || in.path_bytes > sizeof path ||
-		    !read_whole(job_fd, name, in.name_bytes) || !read_whole(job_fd, path, in.path_bytes))
+		if (in.magic != JOB_MAGIC || in.name_bytes > sizeof name || !read_whole(job_fd, name, in.name_bytes))
 			_exit(1);
-		struct job job = {in.number, name, path, in.slot, in.slot_bytes, in.attempt};
+		struct job job = {in.number, name, in.slot, in.slot_bytes, in.attempt};
 		bp_error error = {.status = BP_OK, .offset = BP_NO_OFFSET};
 		uint8_t *record = NULL;
 		size_t record_bytes = 0;
@@ -183,18 +182,17 @@ void worker_send(struct worker *worker, struct kept_job *kept)
 {
 	struct {
 		struct job_frame frame;
-		char text[sizeof kept->name + sizeof kept->path];
+		char name[sizeof kept->name];
 	} message;
-	size_t name_bytes = strlen(kept->name) + 1, path_bytes = strlen(kept->path) + 1;
+	size_t name_bytes = strlen(kept->name) + 1;
 
 	memset(&message, 0, sizeof message.frame);
-	message.frame = (struct job_frame){JOB_MAGIC,      kept->job.attempt,    kept->job.number,    kept->job.slot_bytes,
-	                                   kept->job.slot, (uint32_t)name_bytes, (uint32_t)path_bytes};
-	memcpy(message.text, kept->name, name_bytes);
-	memcpy(message.text + name_bytes, kept->path, path_bytes);
+	message.frame = (struct job_frame){JOB_MAGIC,           kept->job.attempt, kept->job.number,
+	                                   kept->job.slot_bytes, kept->job.slot,    (uint32_t)name_bytes};
+	memcpy(message.name, kept->name, name_bytes);
 	worker->current = kept;
 	/* a worker that has died meanwhile is noticed by its result pipe, so a failure needs no care here */
-	write_whole(worker->job_fd, &message, sizeof message.frame + name_bytes + path_bytes);
+	write_whole(worker->job_fd, &message, sizeof message.frame + name_bytes);
 }
 
 /* What the buffer holds: 1 a whole result, 0 a part of one, -1 nonsense. */

@@ -11,8 +11,7 @@
 /* A job as the parent keeps it until its result is there. */
 struct kept_job {
 	struct job job;
-	char name[256];
-	char path[WORKER_PATH_BYTES_MAX];
+	char name[WORKER_NAME_BYTES_MAX + 1];
 };
 
 struct worker {

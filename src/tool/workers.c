@@ -180,11 +180,11 @@ void workers_submit(struct workers *pool, const struct job *job)
 {
 	struct job_result result = {.number = job->number};
 	struct kept_job *kept = malloc(sizeof *kept);
-	if (!kept || strlen(job->path) >= sizeof kept->path || strlen(job->name) >= sizeof kept->name) {
+	if (!kept || strlen(job->name) >= sizeof kept->name) {
 		if (!kept)
 			error_memory(&result.error, sizeof *kept);
 		else
-			error_set(&result.error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the path has more than %d bytes", WORKER_PATH_BYTES_MAX - 1);
+			error_set(&result.error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the name has more than %d bytes", WORKER_NAME_BYTES_MAX);
 		free(kept);
 		pool->options.result(pool->options.result_user, &result);
 		if (job->slot >= 0)
@@ -194,7 +194,6 @@ void workers_submit(struct workers *pool, const struct job *job)
 	kept->job = *job;
 	kept->job.attempt = 1;
 	strcpy(kept->name, job->name);
-	strcpy(kept->path, job->path);
 	pool->again[pool->again_count++] = kept;
 	again_send(pool);
 }

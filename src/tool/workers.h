@@ -13,13 +13,12 @@
 
 #include "../brdfpack.h"
 
-enum { WORKERS_MAX = 256, WORKER_RECORD_BYTES_MAX = 64 << 20, WORKER_PATH_BYTES_MAX = 4096 };
+enum { WORKERS_MAX = 256, WORKER_RECORD_BYTES_MAX = 1 << 24, WORKER_NAME_BYTES_MAX = 255 };
 
-/* One measured file, in the file system (path) or copied into a slot of shared memory. */
+/* One material to pack: one that the worker knows by its number, or a copy in a slot of shared memory. */
 struct job {
 	uint64_t number;  /* the caller's; comes back with the result */
 	const char *name; /* of the material */
-	const char *path; /* what a worker opens; for a slot, what messages call it */
 	int slot;         /* from workers_slot_take, or -1 */
 	uint64_t slot_bytes;
 	uint32_t attempt; /* 1, or 2 after a worker died; the pool sets it */

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# From a fresh clone to an archive: installs what is missing, builds, makes the demo materials,
+# packs them, lists and verifies the archive, extracts one material.
+#
+#     scripts/demo.sh [FOLDER]      default: build/demo; needs about 700 MB there
+set -euo pipefail
+cd "$(dirname "$0")/.."
+folder=${1:-build/demo}
+
+scripts/setup.sh build
+make -s -j"$(nproc)" all
+mkdir -p "$folder"
+
+run() {
+	echo
+	echo "\$ brdfpack $*"
+	build/brdfpack "$@"
+}
+run synth "$folder/materials"
+run build -o "$folder/demo.bpk" "$folder/materials"
+run list "$folder/demo.bpk"
+run verify --deep "$folder/demo.bpk"
+first=$(build/brdfpack list --json "$folder/demo.bpk" | sed -n '1s/^{"name": "\([^"]*\)".*/\1/p')
+run list "$folder/demo.bpk" "$first"
+run extract -C "$folder/extracted" "$folder/demo.bpk" "$first"
+echo
+ls -l "$folder/demo.bpk" "$folder/materials/$first.binary" "$folder/extracted/$first.binary"

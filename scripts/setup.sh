@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that are missing, and nothing that is already there.
+#
+#     scripts/setup.sh [build|test|slow|bench]...      default: build
+#
+#     build  what the tool and the library need
+#     test   what the unit tests and command-line tests need besides
+#     slow   what the clang, sanitizer and valgrind jobs need besides
+#     bench  what the benchmarks and their plots need besides
+#
+# Needs root or sudo only when something is missing; without either it names the packages and stops.
+set -euo pipefail
+
+# package:command, where any version of the command will do, however it was installed
+build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
+test="libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config"
+slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
+bench="gnuplot-nox:gnuplot liblapacke-dev libgsl-dev libzfp-dev libzstd-dev liblzma-dev"
+
+wanted=""
+for group in "${@:-build}"; do
+	case "$group" in
+	build) wanted+=" $build" ;;
+	test) wanted+=" $test" ;;
+	slow) wanted+=" $slow" ;;
+	bench) wanted+=" $bench" ;;
+	*)
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, bench" >&2
+		exit 2
+		;;
+	esac
+done
+
+missing=()
+for entry in $wanted; do
+	package=${entry%%:*}
+	command=""
+	[ "$entry" = "$package" ] || command=${entry#*:}
+	[ -z "$command" ] || ! command -v "$command" >/dev/null 2>&1 || continue
+	[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+	# sudo without a password, or someone at a terminal who can type one
+	if ! command -v sudo >/dev/null 2>&1 || ! { sudo -n true 2>/dev/null || [ -t 0 ]; }; then
+		echo "setup.sh: these packages are missing, and installing them needs root or sudo:" >&2
+		echo "    apt-get install ${missing[*]}" >&2
+		exit 1
+	fi
+	as_root=(sudo)
+fi
+if ! command -v apt-get >/dev/null 2>&1; then
+	echo "setup.sh: no apt-get here; install what these Debian packages hold: ${missing[*]}" >&2
+	exit 1
+fi
+echo "setup.sh: installing ${missing[*]}"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! { "${as_root[@]}" apt-get update -qq &&
+	"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+	tail -n 20 "$log" >&2
+	echo "setup.sh: apt-get failed" >&2
+	exit 1
+fi

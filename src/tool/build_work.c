@@ -1,0 +1,75 @@
+#include "build_state.h"
+
+#include "../error.h"
+#include "../merl/sha256.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A member of a stream: `left` bytes in a memory file, from `offset` on. */
+struct slot_reader {
+	int fd;
+	uint64_t offset, left;
+};
+
+static bp_status slot_read(void *user, void *bytes, size_t capacity, size_t *count, bp_error *error)
+{
+	struct slot_reader *slot = user;
+	size_t wanted = capacity < slot->left ? capacity : (size_t)slot->left;
+	/* pread: the descriptor's position is shared with the parent and the other workers */
+	ssize_t got = pread(slot->fd, bytes, wanted, (off_t)slot->offset);
+	if (got < 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the copied member: %s", strerror(errno));
+	slot->offset += (uint64_t)got;
+	slot->left -= (uint64_t)got;
+	*count = (size_t)got;
+	return BP_OK;
+}
+
+/*
+ * For tests: BRDFPACK_TEST_CRASH=NAME lets the worker that gets this material die of SIGSEGV;
+ * NAME:1 only at the first attempt. BRDFPACK_TEST_SLEEP=SECONDS delays every material.
+ */
+static void test_hooks(const struct job *job)
+{
+	const char *crash = getenv("BRDFPACK_TEST_CRASH");
+	const char *seconds = getenv("BRDFPACK_TEST_SLEEP");
+	size_t name_bytes = strlen(job->name);
+	if (crash && !strncmp(crash, job->name, name_bytes) &&
+	    (!crash[name_bytes] || (!strcmp(crash + name_bytes, ":1") && job->attempt == 1))) {
+		signal(SIGSEGV, SIG_DFL);
+		raise(SIGSEGV);
+	}
+	if (seconds)
+		sleep((unsigned)atoi(seconds));
+}
+
+bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error)
+{
+	static struct source_cursor cursor; /* this process's own: it keeps a zip open from member to member */
+	const struct build *build = user;
+	struct slot_reader slot = {.fd = fd, .left = job->slot_bytes};
+	struct record_source source = {0};
+	struct lattice lattice = {0};
+	struct sha256 sha;
+	bp_status status;
+
+	test_hooks(job);
+	cursor.any_dims = build->options->any_lattice;
+	sha256_start(&sha);
+	if (fd >= 0)
+		status = lattice_read(slot_read, &slot, sha256_add, &sha, build->options->any_lattice, &lattice, error);
+	else
+		status = source_item_read(&build->sources.items[job->number], &cursor, sha256_add, &sha, &lattice, error);
+	if (status)
+		return status;
+	source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
+	source.nonfinite_count = lattice.nonfinite_count;
+	sha256_finish(&sha, source.sha256);
+	status = record_pack(&lattice, job->name, &source, &build->options->fit, record, record_bytes, NULL, error);
+	lattice_free(&lattice);
+	return status;
+}

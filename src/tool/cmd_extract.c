@@ -1,0 +1,171 @@
+#include "command.h"
+#include "facts.h"
+#include "folder.h"
+#include "options.h"
+#include "report.h"
+#include "selection.h"
+
+#include "../error.h"
+#include "../merl/merl_file.h"
+#include "../output_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for one decoded table, kept from material to material as long as the lattice is the same. */
+struct table {
+	struct expansion expansion;
+	uint8_t *below;
+	double limit; /* of `below` */
+};
+
+static void table_free(struct table *table)
+{
+	expansion_free(&table->expansion);
+	free(table->below);
+	*table = (struct table){0};
+}
+
+static bool dims_equal(struct lattice_dims a, struct lattice_dims b)
+{
+	return a.theta_h == b.theta_h && a.theta_d == b.theta_d && a.phi_d == b.phi_d;
+}
+
+static bp_status table_fit(struct table *table, const struct model *model, bp_error *error)
+{
+	bp_status status;
+	if (table->below && dims_equal(table->expansion.dims, model->dims) && table->limit == model->horizon_limit)
+		return BP_OK;
+	table_free(table);
+	size_t cells = lattice_cells(model->dims);
+	status = expansion_alloc(model->dims, &table->expansion, error);
+	if (status)
+		return status;
+	table->below = malloc(cells);
+	status = table->below ? lattice_below_horizon(model->dims, model->horizon_limit, table->below, error)
+	                      : error_memory(error, cells);
+	table->limit = model->horizon_limit;
+	if (status)
+		table_free(table);
+	return status;
+}
+
+static bp_status merl_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
+                            const char *path, struct table *table, bp_error *error)
+{
+	struct model *model = NULL;
+	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
+	if (!status)
+		status = table_fit(table, model, error);
+	if (!status)
+		status = model_expand(model, 0, &table->expansion, error);
+	if (!status)
+		status = lattice_write_path(path, &table->expansion, table->below, error);
+	model_free(model);
+	return status;
+}
+
+static bp_status json_write(const struct record_head *head, const char *path, bp_error *error)
+{
+	struct output_file file;
+	char *text = NULL;
+	size_t bytes = 0;
+	bp_status status;
+
+	FILE *memory = open_memstream(&text, &bytes);
+	if (!memory)
+		return error_memory(error, 0);
+	struct json json = json_begin(memory, true);
+	json_object(&json, NULL);
+	json_string(&json, "name", head->name);
+	facts_full(&json, head);
+	json_close(&json);
+	json_finish(&json);
+	if (fclose(memory) != 0) {
+		free(text);
+		return error_memory(error, bytes);
+	}
+	status = output_file_open(path, &file, error);
+	if (!status) {
+		status = output_file_write(&file, text, bytes, error);
+		if (!status)
+			status = output_file_commit(&file, error);
+		else
+			output_file_discard(&file);
+	}
+	free(text);
+	return status;
+}
+
+/* One material into FOLDER/NAME.binary or .json. Names hold no '/', so it cannot land anywhere else. */
+static bool material_extract(struct selection *selection, uint64_t n, const char *folder, bool json, struct table *table)
+{
+	struct index_entry entry = {.name = ""};
+	struct record_head head;
+	bp_error error;
+	bp_status status = selection_entry(selection, n, &entry, &error);
+	if (!status)
+		status = archive_entry_head(selection->archive, &entry, &head, &error);
+	if (!status) {
+		char *path = folder_path(folder, entry.name, json ? "json" : "binary");
+		if (!path)
+			status = error_memory(&error, strlen(folder));
+		else
+			status = json ? json_write(&head, path, &error) : merl_write(selection, &entry, &head, path, table, &error);
+		free(path);
+	}
+	if (status)
+		report_error(selection->path, entry.name[0] ? entry.name : NULL, &error);
+	return !status;
+}
+
+static int extract_main(const struct command *self, int argc, char **argv)
+{
+	enum { OPTION_FORMAT = OPTION_LONG };
+	static const struct option names[] = {
+		{"directory", required_argument, NULL, 'C'}, {"format", required_argument, NULL, OPTION_FORMAT}, {0}};
+	const char *folder = ".";
+	struct selection selection;
+	struct table table = {0};
+	bool json = false, whole;
+	int option;
+
+	while ((option = options_next(self, argc, argv, "C:", names)) >= 0) {
+		if (option == 'C')
+			folder = optarg;
+		else if (!strcmp(optarg, "json") || !strcmp(optarg, "merl"))
+			json = optarg[0] == 'j';
+		else
+			return report_usage(self, "--format: '%s' is neither 'merl' nor 'json'", optarg);
+	}
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	if (optind >= argc)
+		return report_usage(self, "no archive");
+	if (!selection_open(&selection, argv[optind], argv + optind + 1, argc - optind - 1))
+		return EXIT_FAILED;
+	whole = !selection.incomplete;
+	if (selection.count > 0 && !folder_create(folder)) {
+		selection_close(&selection);
+		return EXIT_FAILED;
+	}
+	for (uint64_t i = 0; i < selection.count; i++)
+		whole &= material_extract(&selection, i, folder, json, &table);
+	table_free(&table);
+	selection_close(&selection);
+	return whole ? EXIT_OK : EXIT_FAILED;
+}
+
+const struct command command_extract = {
+	.name = "extract",
+	.run = extract_main,
+	.description = "write materials as MERL files, or their parameters as JSON",
+	.usage = "Usage: brdfpack extract [-C DIR] [--format merl|json] ARCHIVE [NAME]...\n"
+	         "Writes DIR/NAME.binary for the named materials, or for all. Cells wholly below the horizon\n"
+	         "are -1, all others hold the model's value.\n"
+	         "\n"
+	         "  -C, --directory DIR  where to (default: here); created when it is missing\n"
+	         "      --format merl    MERL files (the default)\n"
+	         "      --format json    DIR/NAME.json with the parameters instead\n"
+	         "  -h, --help           this text\n",
+};

@@ -1,0 +1,7 @@
+# An illegal name is refused before any work.
+fixture alpha beta
+mv beta.binary $'be\nta.binary'
+code build -o out.bpk .
+mv $'be\nta.binary' $'be\xffta.binary'
+code build -o out.bpk .
+ls *.bpk 2>/dev/null

@@ -1,0 +1,6 @@
+# The commands, and what happens without one.
+brdfpack help
+code brdfpack
+code brdfpack --help | tail -n 1
+code brdfpack nonsense
+code brdfpack help nonsense

@@ -1,0 +1,5 @@
+# With a name: everything about that material.
+fixture alpha
+build -o out.bpk .
+brdfpack list out.bpk alpha | sed -E '/SHA-256/!s/-?[0-9][0-9.e+-]*/N/g; s/  +/ /g'
+sha256sum alpha.binary

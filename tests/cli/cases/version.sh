@@ -1,0 +1,2 @@
+# The version on standard output.
+brdfpack --version

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Installs into a scratch folder and uses what is there as another program would: tests/install.sh BUILD [MAKE-VARIABLE]...
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=$1
+shift
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+make=(make -s "BUILD=$build" "$@")
+
+"${make[@]}" check-symbols
+"${make[@]}" install "PREFIX=$scratch/usr" >/dev/null
+"${make[@]}" install "PREFIX=/usr" "DESTDIR=$scratch/image" >/dev/null
+(cd "$scratch/usr" && find . ! -type d | sort) >"$scratch/plain"
+(cd "$scratch/image/usr" && find . ! -type d | sort) >"$scratch/staged"
+cmp "$scratch/plain" "$scratch/staged"
+cat "$scratch/plain"
+
+export PKG_CONFIG_PATH=$scratch/usr/lib/pkgconfig LD_LIBRARY_PATH=$scratch/usr/lib
+archive=$scratch/demo.bpk
+"$scratch/usr/bin/brdfpack" synth --lattice 6x6x8 "$scratch/materials"
+"$scratch/usr/bin/brdfpack" build -q --any-lattice -o "$archive" "$scratch/materials"
+count=$(find "$scratch/materials" -name "*.binary" | wc -l)
+
+flags=(-Wall -Wextra -Werror)
+read -r -a shared <<<"$(pkg-config --cflags --libs brdfpack)"
+read -r -a static <<<"$(pkg-config --static --cflags --libs brdfpack)"
+cc -std=c17 "${flags[@]}" -o "$scratch/shared" tests/consumer.c "${shared[@]}"
+cc -std=c17 "${flags[@]}" -static -o "$scratch/static" tests/consumer.c "${static[@]}"
+[ "$("$scratch/shared" "$archive")" = "$count" ]
+[ "$("$scratch/static" "$archive")" = "$count" ]
+if command -v g++ >/dev/null; then
+	g++ -x c++ "${flags[@]}" -o "$scratch/cpp" tests/consumer.c "${shared[@]}"
+	[ "$("$scratch/cpp" "$archive")" = "$count" ]
+fi
+# nothing but zlib, libm and libc at run time
+needed=$(readelf -d "$scratch/usr/lib/libbrdfpack.so" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | grep -v '^libz\.\|^libm\.\|^libc\.\|^ld-linux' || true)
+[ -z "$needed" ] || { echo "libbrdfpack needs $needed"; exit 1; }
+readelf -d "$scratch/usr/lib/libbrdfpack.so" | grep -q "SONAME.*libbrdfpack.so.0"
+
+"${make[@]}" uninstall "PREFIX=$scratch/usr" >/dev/null
+[ -z "$(find "$scratch/usr" ! -type d)" ]
