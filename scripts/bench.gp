@@ -1,0 +1,51 @@
+# bench.gp: the three plots of bench_plot.sh, which sets work, out and kind and prepares the files in work.
+if (kind eq 'png') {
+	set terminal pngcairo size 1100,520 font 'sans,11'
+} else {
+	set terminal svg size 1100,520 font 'sans,13' background 'white'
+}
+methods = system("cat ".work."/methods")
+data = system("cat ".work."/data")
+count = words(methods)
+points = work."/points"
+
+# Okabe and Ito's colours, which colour-blind readers tell apart; our own profiles first and thicker
+array colour[9] = ['#0072B2', '#009E73', '#D55E00', '#E69F00', '#CC79A7', '#56B4E9', '#7F7F7F', '#000000', '#8B4513']
+array shape[9] = [7, 5, 9, 11, 13, 4, 6, 8, 10]
+own(m) = word(methods, m) eq 'paper' || word(methods, m) eq 'default'
+
+set logscale x
+set grid xtics ytics lc rgb '#DDDDDD' lt 1
+set border 3 lc rgb '#444444'
+set tics nomirror
+set format x '%.0s%c'
+array labels[3] = ['bytes per material', 'fit time, processor seconds', 'evaluation time, ns']
+array names[3] = ['bytes', 'fit', 'evaluate']
+
+do for [p = 1:3] {
+	set output out.'-'.names[p].'.'.kind
+	set multiplot layout 1,2 title 'Median over '.data font ',12'
+	if (p == 1) { set format x '%.0s%c' } else { set format x '%g' }
+	set xlabel labels[p]
+	set tmargin at screen 0.91
+	set bmargin at screen 0.12
+
+	unset key
+	set lmargin at screen 0.075
+	set rmargin at screen 0.425
+	set logscale y
+	set format y '%g'
+	set ylabel 'log RMSE (lower is better)'
+	plot for [m = 1:count] points index m - 1 using p:4 with linespoints lw (own(m) ? 3 : 1.5) ps 1 pt shape[1 + (m - 1) % 9] \
+		lc rgb colour[1 + (m - 1) % 9] title word(methods, m)
+
+	set key outside right top Left reverse samplen 2
+	set lmargin at screen 0.505
+	set rmargin at screen 0.84
+	unset logscale y
+	set format y '%g'
+	set ylabel 'sphere PSNR, key lights, dB (higher is better)'
+	plot for [m = 1:count] points index m - 1 using p:5 with linespoints lw (own(m) ? 3 : 1.5) ps 1 pt shape[1 + (m - 1) % 9] \
+		lc rgb colour[1 + (m - 1) % 9] title word(methods, m)
+	unset multiplot
+}
