@@ -158,7 +158,7 @@ bench-data: all
 	$(Q)[ -n "$(BENCH_DATA)" ] || [ -d $(BUILD)/demo ] || $(BUILD)/brdfpack synth $(BUILD)/demo
 bench-methods bench-quick: bench-ready all
 	$(Q)$(MAKE) --no-print-directory $(BUILD)/bench/brdfpack-bench bench-data
-	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BENCH_RUN) $(if $(filter bench-quick,$@),-q) -o $(BENCH_OUT)/$@.tsv
+	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BENCH_RUN) $(if $(filter bench-quick,$@),-q -j 2) -o $(BENCH_OUT)/$@.tsv
 	$(Q)scripts/bench_plot.sh $(BENCH_OUT)/$@.tsv $(BENCH_OUT)/$@
 
 bench: all bench-methods

@@ -34,6 +34,12 @@ struct baseline {
 	bp_status (*expand)(const void *state, struct expansion *out, bp_error *error);
 
 	/*
+	 * What a renderer does once after decoding, before it evaluates: may keep things in the state. The
+	 * table is not needed afterwards. NULL: nothing.
+	 */
+	bp_status (*prepare)(void *state, const struct expansion *table, bp_error *error);
+
+	/*
 	 * One evaluation: unit vectors in the local frame (normal = +z), both above the horizon; rgb in 1/sr.
 	 * NULL: nothing short of decoding the whole can be evaluated; the benchmark then times a
 	 * nearest look-up in the decoded table.
@@ -47,7 +53,7 @@ extern const struct baseline BASELINE_PAPER, BASELINE_DEFAULT;
 /* The analytic models: no budget, tens of bytes. */
 extern const struct baseline BASELINE_WARD, BASELINE_COOK_TORRANCE, BASELINE_EDWARDS;
 /* Data-driven models of the paper's authors. */
-extern const struct baseline BASELINE_COPULA, BASELINE_TUCKER;
+extern const struct baseline BASELINE_ARCHIMEDEAN, BASELINE_TUCKER;
 /* General codecs. */
 extern const struct baseline BASELINE_ZFP, BASELINE_ZLIB, BASELINE_ZSTD, BASELINE_XZ;
 

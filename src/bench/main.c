@@ -27,10 +27,10 @@
 
 enum { MATERIALS_MAX = ROW_MEDIAN_MAX, BUDGETS_MAX = 16, METHODS_MAX = 32, WORKERS_MAX = 64, QUICK_MATERIALS = 3, REPEATS = 3 };
 /* Work that takes less than this is repeated and its median taken. */
-static const double SHORT_SECONDS = 0.5;
+static const double SHORT_SECONDS = 0.3;
 
 static const struct baseline *const METHODS[] = {
-	&BASELINE_PAPER, &BASELINE_DEFAULT, &BASELINE_WARD, &BASELINE_COOK_TORRANCE, &BASELINE_EDWARDS, &BASELINE_COPULA,
+	&BASELINE_PAPER, &BASELINE_DEFAULT, &BASELINE_WARD, &BASELINE_COOK_TORRANCE, &BASELINE_EDWARDS, &BASELINE_ARCHIMEDEAN,
 	&BASELINE_TUCKER, &BASELINE_ZFP, &BASELINE_ZLIB, &BASELINE_ZSTD, &BASELINE_XZ,
 };
 /* Rows that no method makes. */
@@ -113,7 +113,9 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 		seconds[count++] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 	} while (count < REPEATS && seconds[0] < SHORT_SECONDS);
 	row->decode_seconds = median_of(seconds, count);
-	row->evaluated = method->evaluate ? EVALUATED_MODEL : EVALUATED_TABLE;
+	row->evaluated = method->evaluate && !method->prepare ? EVALUATED_MODEL : EVALUATED_TABLE;
+	if (method->prepare && (status = method->prepare(state, table, error)))
+		goto out;
 	status = method->evaluate ? time_model(method, state, run->pairs, REPEATS, &row->evaluate_ns, error) :
 	                            time_table(table, run->pairs, REPEATS, &row->evaluate_ns, error);
 	if (!status)
@@ -193,10 +195,13 @@ static void run_material(struct run *run, int at)
 		for (int b = 0; run->method_on[m] && b < (METHODS[m]->budgeted ? run->budget_count : 1); b++) {
 			struct row row = empty_row(at, m);
 			row.budget = METHODS[m]->budgeted ? run->budgets[b] : 0;
-			if (run_method(run, &material, &reference, METHODS[m], &row, &table, &error))
-				complain(run, name, METHODS[m]->name, &error);
-			else
+			bp_status status = run_method(run, &material, &reference, METHODS[m], &row, &table, &error);
+			if (!status)
 				fwrite(&row, sizeof row, 1, run->rows);
+			else if (status == BP_ERROR_LIMIT || status == BP_ERROR_UNSUPPORTED) /* this budget is not for this method */
+				fprintf(stderr, "brdfpack-bench: %s: %s: no row: %s\n", name, METHODS[m]->name, error.message);
+			else
+				complain(run, name, METHODS[m]->name, &error);
 		}
 	fprintf(stderr, "brdfpack-bench: %s: %.1f s\n", name, clock_seconds(CLOCK_MONOTONIC) - start);
 out:
@@ -291,7 +296,7 @@ static void print_head(FILE *out, const struct run *run, const char *label, int 
 		fprintf(out, " %s", argv[n]);
 	fprintf(out, "\n# processes: %d; fit, decode: processor seconds; evaluate: median of %d passes over %d random pairs; cat: wall-clock seconds\n",
 	        workers, REPEATS, PAIRS);
-	fprintf(out, "# evaluated: model = straight from what is stored; table = nearest look-up after decoding the whole\n");
+	fprintf(out, "# evaluated: model = straight from what is stored; table = after decoding the whole, nearest look-up (paper, default: interpolated, as a renderer reads them)\n");
 	for (int m = 0; m < YARDSTICK_READ; m++)
 		if (run->method_on[m])
 			fprintf(out, "# %s: %s\n", METHODS[m]->name, METHODS[m]->reference);

@@ -2,27 +2,32 @@
  * profile.c: this project's own records, through the same functions as `brdfpack build` and `extract`.
  *
  * fit = record_pack (which also decodes and measures every layer); decode = record_head_parse, record_decode,
- * model_expand. The bytes are the whole record's.
+ * model_expand; evaluation = table_evaluate, interpolated, in the expanded memory form. The bytes are the whole
+ * record's.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "../codec/record.h"
 #include "../error.h"
+#include "../model/evaluate.h"
 #include "baseline.h"
 
 struct profile_state {
 	uint8_t *record;
 	size_t bytes;
 	struct record_head head;
+	struct table *table; /* after profile_prepare */
 };
 
 static void profile_free(void *opaque)
 {
 	struct profile_state *state = opaque;
 
-	if (state)
+	if (state) {
+		table_free(state->table);
 		free(state->record);
+	}
 	free(state);
 }
 
@@ -90,6 +95,24 @@ static bp_status profile_expand(const void *opaque, struct expansion *out, bp_er
 	return status;
 }
 
+static bp_status profile_prepare(void *opaque, const struct expansion *table, bp_error *error)
+{
+	struct profile_state *state = opaque;
+
+	return table_build(table, TABLE_EXPANDED, 3, &state->table, error);
+}
+
+static void profile_evaluate(const void *opaque, const double wi[3], const double wo[3], double rgb[3])
+{
+	const struct profile_state *state = opaque;
+	const float in[3] = {(float)wi[0], (float)wi[1], (float)wi[2]}, out[3] = {(float)wo[0], (float)wo[1], (float)wo[2]};
+	float value[3];
+
+	table_evaluate(state->table, in, out, value);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = (double)value[c];
+}
+
 const struct baseline BASELINE_PAPER = {
 	.name = "paper",
 	.reference = "this project, --profile paper: Bilgili et al. 2012, pair copulas and wavelets",
@@ -98,6 +121,8 @@ const struct baseline BASELINE_PAPER = {
 	.bytes = profile_bytes,
 	.parameters = profile_parameters,
 	.expand = profile_expand,
+	.prepare = profile_prepare,
+	.evaluate = profile_evaluate,
 	.free_state = profile_free,
 };
 
@@ -109,5 +134,7 @@ const struct baseline BASELINE_DEFAULT = {
 	.bytes = profile_bytes,
 	.parameters = profile_parameters,
 	.expand = profile_expand,
+	.prepare = profile_prepare,
+	.evaluate = profile_evaluate,
 	.free_state = profile_free,
 };

@@ -1,4 +1,4 @@
-#include "copula.h"
+#include "archimedean.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_min.h>
@@ -18,23 +18,23 @@ struct axis_term {
 	double a, b;
 };
 
-static struct axis_term axis_term(enum copula_family family, double alpha, double u)
+static struct axis_term axis_term(enum archimedean_family family, double alpha, double u)
 {
-	if (family == COPULA_FRANK)
+	if (family == ARCHIMEDEAN_FRANK)
 		return (struct axis_term){-expm1(-alpha * u), exp(-alpha * u)};
 	return (struct axis_term){pow(u, -alpha), pow(u, -alpha - 1)};
 }
 
-static double density_of(enum copula_family family, double alpha, struct axis_term x, struct axis_term y, struct axis_term z)
+static double density_of(enum archimedean_family family, double alpha, struct axis_term x, struct axis_term y, struct axis_term z)
 {
-	if (family == COPULA_FRANK) {
+	if (family == ARCHIMEDEAN_FRANK) {
 		double p = -expm1(-alpha), product = x.a * y.a * z.a, s = product / (p * p), rest = 1 - s;
 		return alpha * alpha * s * (1 + s) / (rest * rest * rest) * (x.b * y.b * z.b) / product;
 	}
 	return (1 + alpha) * (1 + 2 * alpha) * (x.b * y.b * z.b) * pow(x.a + y.a + z.a - 2, -1 / alpha - 3);
 }
 
-double copula_density(enum copula_family family, double alpha, double u, double v, double w)
+double archimedean_density(enum archimedean_family family, double alpha, double u, double v, double w)
 {
 	return density_of(family, alpha, axis_term(family, alpha, u), axis_term(family, alpha, v), axis_term(family, alpha, w));
 }
@@ -44,10 +44,10 @@ static uint32_t extent_of(struct lattice_dims dims, int axis)
 	return axis == 0 ? dims.theta_h : axis == 1 ? dims.theta_d : dims.phi_d;
 }
 
-bp_status copula_alloc(struct lattice_dims dims, struct copula_state **out, bp_error *error)
+bp_status archimedean_alloc(struct lattice_dims dims, struct archimedean_state **out, bp_error *error)
 {
 	const size_t per_channel = (size_t)dims.theta_h + dims.theta_d + dims.phi_d;
-	struct copula_state *state = calloc(1, sizeof *state);
+	struct archimedean_state *state = calloc(1, sizeof *state);
 
 	if (!state)
 		return error_memory(error, sizeof *state);
@@ -55,7 +55,7 @@ bp_status copula_alloc(struct lattice_dims dims, struct copula_state **out, bp_e
 	state->marginals = calloc(3 * per_channel, sizeof *state->marginals);
 	state->cumulatives = calloc(3 * per_channel, sizeof *state->cumulatives);
 	if (!state->marginals || !state->cumulatives) {
-		copula_free(state);
+		archimedean_free(state);
 		return error_memory(error, 3 * per_channel * (sizeof(float) + sizeof(double)));
 	}
 	for (size_t c = 0, at = 0; c < 3; c++)
@@ -68,7 +68,7 @@ bp_status copula_alloc(struct lattice_dims dims, struct copula_state **out, bp_e
 	return BP_OK;
 }
 
-void copula_accumulate(struct copula_state *state)
+void archimedean_accumulate(struct archimedean_state *state)
 {
 	for (int c = 0; c < 3; c++)
 		for (int axis = 0; axis < 3; axis++) {
@@ -82,9 +82,9 @@ void copula_accumulate(struct copula_state *state)
 		}
 }
 
-void copula_free(void *opaque)
+void archimedean_free(void *opaque)
 {
-	struct copula_state *state = opaque;
+	struct archimedean_state *state = opaque;
 
 	if (!state)
 		return;
@@ -94,7 +94,7 @@ void copula_free(void *opaque)
 }
 
 /* The mean of the filled channel, and its marginals relative to that. */
-static void take_marginals(struct lattice_dims dims, const double *plane, const uint32_t *source, struct copula_channel *out)
+static void take_marginals(struct lattice_dims dims, const double *plane, const uint32_t *source, struct archimedean_channel *out)
 {
 	const size_t H = dims.theta_h, D = dims.theta_d, P = dims.phi_d;
 	double sum_h, sum_d[LATTICE_EXTENT_MAX] = {0}, sum_p[LATTICE_EXTENT_MAX] = {0}, sum = 0;
@@ -125,12 +125,12 @@ struct search {
 	const struct lobe_sample *sample;
 	const double *rgb;
 	struct lattice_dims dims;
-	const struct copula_channel *channel; /* family, turns, marginals */
+	const struct archimedean_channel *channel; /* family, turns, marginals */
 	double diffuse, scale;                      /* of the last evaluation, in the sample's unit */
 	struct axis_term terms[3 * LATTICE_EXTENT_MAX]; /* scratch */
 };
 
-static double axis_value(const struct copula_channel *channel, int axis, uint32_t n)
+static double axis_value(const struct archimedean_channel *channel, int axis, uint32_t n)
 {
 	double f = channel->cumulative[axis][n];
 
@@ -138,7 +138,7 @@ static double axis_value(const struct copula_channel *channel, int axis, uint32_
 }
 
 /* The terms of every cell along each axis, one after the other: H, D, P entries. */
-static void axis_terms(struct lattice_dims dims, const struct copula_channel *channel, double alpha, struct axis_term *out)
+static void axis_terms(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct axis_term *out)
 {
 	for (int axis = 0; axis < 3; axis++)
 		for (uint32_t n = 0; n < extent_of(dims, axis); n++)
@@ -150,7 +150,7 @@ static double objective(double log_alpha, void *user)
 {
 	struct search *search = user;
 	const struct lobe_sample *s = search->sample;
-	const struct copula_channel *channel = search->channel;
+	const struct archimedean_channel *channel = search->channel;
 	const uint32_t D = search->dims.theta_d, P = search->dims.phi_d;
 	const struct axis_term *term_d = search->terms + search->dims.theta_h, *term_p = term_d + D;
 	double alpha = exp(log_alpha), y1 = 0, yy = 0, yg = 0, g1 = 0, gg = 0;
@@ -203,16 +203,16 @@ static double best_alpha(struct search *search, double *log_alpha)
 	return best;
 }
 
-static void fit_channel(struct search *search, struct copula_channel *channel, double unit)
+static void fit_channel(struct search *search, struct archimedean_channel *channel, double unit)
 {
-	struct copula_channel tried = *channel, best = *channel;
+	struct archimedean_channel tried = *channel, best = *channel;
 	double least = HUGE_VAL;
 
 	search->channel = &tried;
-	for (int family = 0; family < COPULA_FAMILIES; family++)
+	for (int family = 0; family < ARCHIMEDEAN_FAMILIES; family++)
 		for (unsigned turned = 0; turned < 8; turned++) {
 			double log_alpha, e;
-			tried.family = (enum copula_family)family;
+			tried.family = (enum archimedean_family)family;
 			tried.turned = turned;
 			e = best_alpha(search, &log_alpha);
 			if (!(e < least))
@@ -228,14 +228,14 @@ static void fit_channel(struct search *search, struct copula_channel *channel, d
 	*channel = best;
 }
 
-static bp_status copula_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error)
+static bp_status archimedean_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error)
 {
 	const struct lattice *lattice = material->lattice;
 	const size_t cells = lattice_cells(lattice->dims);
 	const uint32_t stride_d = lattice->dims.theta_d >= 60 ? STRIDE_D : 1, stride_p = lattice->dims.phi_d >= 60 ? STRIDE_P : 1;
 	uint32_t *source = malloc(cells * sizeof *source);
 	struct lobe_sample sample = {0};
-	struct copula_state *state = NULL;
+	struct archimedean_state *state = NULL;
 	struct search *search = malloc(sizeof *search);
 	bp_status status;
 
@@ -245,12 +245,12 @@ static bp_status copula_fit(const struct bench_material *material, size_t budget
 		status = error_memory(error, cells * sizeof *source + sizeof *search);
 		goto out;
 	}
-	if ((status = lattice_fill_sources(lattice, source, error)) || (status = copula_alloc(lattice->dims, &state, error)) ||
+	if ((status = lattice_fill_sources(lattice, source, error)) || (status = archimedean_alloc(lattice->dims, &state, error)) ||
 	    (status = lobe_sample_take(lattice, stride_d, stride_p, &sample, error)))
 		goto out;
 	for (int c = 0; c < 3; c++)
 		take_marginals(lattice->dims, lattice->rgb[c], source, &state->channel[c]);
-	copula_accumulate(state);
+	archimedean_accumulate(state);
 	*search = (struct search){.sample = &sample, .dims = lattice->dims};
 	for (int c = 0; c < 3; c++) {
 		search->rgb = sample.rgb[c];
@@ -260,22 +260,22 @@ static bp_status copula_fit(const struct bench_material *material, size_t budget
 	state = NULL;
 out:
 	lobe_sample_free(&sample);
-	copula_free(state);
+	archimedean_free(state);
 	free(search);
 	free(source);
 	return status;
 }
 
-static size_t copula_parameters(const void *opaque)
+static size_t archimedean_parameters(const void *opaque)
 {
-	const struct lattice_dims dims = ((const struct copula_state *)opaque)->dims;
+	const struct lattice_dims dims = ((const struct archimedean_state *)opaque)->dims;
 
 	return 3 * ((size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3);
 }
 
-static size_t copula_bytes(const void *state)
+static size_t archimedean_bytes(const void *state)
 {
-	return copula_parameters(state) * sizeof(float) + 3;
+	return archimedean_parameters(state) * sizeof(float) + 3;
 }
 
 static double finite_or_zero(double x)
@@ -283,9 +283,9 @@ static double finite_or_zero(double x)
 	return isfinite(x) ? x : 0;
 }
 
-static bp_status copula_expand(const void *opaque, struct expansion *out, bp_error *error)
+static bp_status archimedean_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
-	const struct copula_state *state = opaque;
+	const struct archimedean_state *state = opaque;
 	const struct lattice_dims dims = state->dims;
 	struct axis_term *terms = malloc(3 * LATTICE_EXTENT_MAX * sizeof *terms);
 	const struct axis_term *term_d = terms + dims.theta_h, *term_p = term_d + dims.theta_d;
@@ -294,7 +294,7 @@ static bp_status copula_expand(const void *opaque, struct expansion *out, bp_err
 		return error_memory(error, 3 * LATTICE_EXTENT_MAX * sizeof *terms);
 	out->unit = 1;
 	for (int c = 0; c < 3; c++) {
-		const struct copula_channel *channel = &state->channel[c];
+		const struct archimedean_channel *channel = &state->channel[c];
 		axis_terms(dims, channel, (double)channel->alpha, terms);
 		for (uint32_t i = 0; i < dims.theta_h; i++)
 			for (uint32_t j = 0; j < dims.theta_d; j++)
@@ -310,14 +310,14 @@ static bp_status copula_expand(const void *opaque, struct expansion *out, bp_err
 }
 
 /* Marginals and their sums are interpolated linearly, phi_d up to its last corner. */
-static void copula_evaluate(const void *opaque, const double wi[3], const double wo[3], double rgb[3])
+static void archimedean_evaluate(const void *opaque, const double wi[3], const double wo[3], double rgb[3])
 {
-	const struct copula_state *state = opaque;
+	const struct archimedean_state *state = opaque;
 	double at[3];
 
 	lattice_coordinates(state->dims, wi, wo, at);
 	for (int c = 0; c < 3; c++) {
-		const struct copula_channel *channel = &state->channel[c];
+		const struct archimedean_channel *channel = &state->channel[c];
 		double f = (double)channel->scale, u[3];
 		for (int axis = 0; axis < 3; axis++) {
 			uint32_t n = (uint32_t)at[axis], next = n + 1 < extent_of(state->dims, axis) ? n + 1 : n;
@@ -327,18 +327,18 @@ static void copula_evaluate(const void *opaque, const double wi[3], const double
 			u[axis] = u0 + x * (u1 - u0);
 		}
 		if (f > 0)
-			f *= copula_density(channel->family, (double)channel->alpha, u[0], u[1], u[2]);
+			f *= archimedean_density(channel->family, (double)channel->alpha, u[0], u[1], u[2]);
 		rgb[c] = (double)channel->diffuse + finite_or_zero(f);
 	}
 }
 
-const struct baseline BASELINE_COPULA = {
-	.name = "copula",
+const struct baseline BASELINE_ARCHIMEDEAN = {
+	.name = "archimedean",
 	.reference = "Ozturk et al. 2010, Frank or Clayton copula",
-	.fit = copula_fit,
-	.bytes = copula_bytes,
-	.parameters = copula_parameters,
-	.expand = copula_expand,
-	.evaluate = copula_evaluate,
-	.free_state = copula_free,
+	.fit = archimedean_fit,
+	.bytes = archimedean_bytes,
+	.parameters = archimedean_parameters,
+	.expand = archimedean_expand,
+	.evaluate = archimedean_evaluate,
+	.free_state = archimedean_free,
 };

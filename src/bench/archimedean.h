@@ -1,5 +1,5 @@
 /*
- * copula.h: A. Ozturk, M. Kurt, A. Bilgili, "A copula-based BRDF model", Computer Graphics Forum 29(6), 2010:
+ * archimedean.h: A. Ozturk, M. Kurt, A. Bilgili, "A copula-based BRDF model", Computer Graphics Forum 29(6), 2010:
  * a channel is a density over (theta_h, theta_d, phi_d) with its own three marginals and an Archimedean copula:
  *
  *     f = diffuse + K f_h f_d f_phi c(u, v, w; alpha)         u, v, w = F_h, F_d, F_phi (or 1 - F, see below)
@@ -18,34 +18,34 @@
  * Marginals are the means over the other two axes of the table with its invalid cells filled (log_tensor.h).
  * Per channel H + D + P + 3 float32 and one byte for family and turns; MERL: 1089 numbers and 3 bytes, 4359 bytes.
  */
-#ifndef BENCH_COPULA_H
-#define BENCH_COPULA_H
+#ifndef BENCH_ARCHIMEDEAN_H
+#define BENCH_ARCHIMEDEAN_H
 
 #include "../merl/lattice.h"
 
-enum copula_family { COPULA_FRANK, COPULA_CLAYTON, COPULA_FAMILIES };
+enum archimedean_family { ARCHIMEDEAN_FRANK, ARCHIMEDEAN_CLAYTON, ARCHIMEDEAN_FAMILIES };
 
-struct copula_channel {
-	enum copula_family family;
+struct archimedean_channel {
+	enum archimedean_family family;
 	unsigned turned; /* bit a: axis a is turned round */
 	float alpha, diffuse, scale;
 	float *marginal[3]; /* mean 1 (all 0 for a black channel), per axis: H, D, P values */
 	double *cumulative[3]; /* F at the middle of each cell, derived from the marginal */
 };
 
-struct copula_state {
+struct archimedean_state {
 	struct lattice_dims dims;
-	struct copula_channel channel[3];
+	struct archimedean_channel channel[3];
 	float *marginals;
 	double *cumulatives;
 };
 
 /* The copula's density; u, v, w in (0, 1), alpha > 0. */
-double copula_density(enum copula_family family, double alpha, double u, double v, double w);
+double archimedean_density(enum archimedean_family family, double alpha, double u, double v, double w);
 
 /* An empty state whose arrays are allocated, and what follows from its marginals. */
-bp_status copula_alloc(struct lattice_dims dims, struct copula_state **out, bp_error *error);
-void copula_accumulate(struct copula_state *state);
-void copula_free(void *state); /* NULL is allowed */
+bp_status archimedean_alloc(struct lattice_dims dims, struct archimedean_state **out, bp_error *error);
+void archimedean_accumulate(struct archimedean_state *state);
+void archimedean_free(void *state); /* NULL is allowed */
 
 #endif
