@@ -49,7 +49,7 @@ static inline float quarter_turns(float y, float x)
 	float low = y > x ? x : y, high = y > x ? y : x;
 	float t = low / (high > FLT_MIN ? high : FLT_MIN), q = t * t;
 	float a = QUARTER_TURNS_POLYNOMIAL(q) * t;
-	return y > x ? 1 - a : a;
+	return fabsf((y > x ? 1.0f : 0.0f) - a); /* 1 - a or a, without a branch */
 }
 
 typedef float f32x4 __attribute__((vector_size(16)));

@@ -1,0 +1,416 @@
+/*
+ * Sampling: the density integrates to 1, the samples follow it (chi-square), and their mean weight is the albedo.
+ * The oracles are written in double, in the half-angle's own coordinates, and know nothing of the sampler's tables.
+ */
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <gsl/gsl_cdf.h>
+
+#include "model/sample.h"
+
+static uint64_t state = 13;
+static double uniform(void)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return (double)(state >> 11) * 0x1p-53;
+}
+
+enum kind { MATTE, SATIN, GLOSSY, MIRROR, RETRO, SHEEN, ASYMMETRIC, KINDS };
+
+/* f at a lattice corner; the asymmetric one is not mirror-symmetric about the plane of wo. */
+static double kind_value(enum kind kind, double theta_h, double theta_d, double phi_d, int c)
+{
+	double fresnel = pow(1 - cos(theta_d), 5);
+	switch (kind) {
+	case MATTE: return 0.2 + 0.1 * c;
+	case SATIN: return 0.1 + (0.5 + 2 * fresnel) * exp(-20 * theta_h * theta_h);
+	case GLOSSY: return 0.05 * (c + 1) + (10 + 60 * fresnel) * exp(-900 * theta_h * theta_h);
+	case MIRROR: return 1e-4 + 2e4 * exp(-2e4 * theta_h * theta_h) + 2 / (1 + 1e5 * theta_h * theta_h);
+	case RETRO: return 0.05 + 40 * exp(-60 * theta_d * theta_d);
+	case SHEEN: return 0.02 + 0.5 * pow(sin(theta_h), 4) + 0.1 * fresnel;
+	default: return 0.1 + exp(-10 * theta_h * theta_h) * (1.5 + 1.4 * sin(2 * phi_d)) * (1 + c);
+	}
+}
+
+struct material {
+	struct table *table;
+	struct sampler *sampler;
+};
+
+static struct material make(enum kind kind, struct lattice_dims dims)
+{
+	struct expansion e;
+	struct material m;
+	assert_int_equal(expansion_alloc(dims, &e, NULL), BP_OK);
+	e.unit = 1;
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++)
+			for (uint32_t k = 0; k < dims.phi_d; k++)
+				for (int c = 0; c < 3; c++) {
+					double h = (double)i / dims.theta_h;
+					e.rgb[c][lattice_index(dims, i, j, k)] = (float)kind_value(kind, h * h * M_PI_2, (double)j / dims.theta_d * M_PI_2, (double)k / dims.phi_d * M_PI, c);
+				}
+	assert_int_equal(table_build(&e, TABLE_EXPANDED, 3, &m.table, NULL), BP_OK);
+	assert_int_equal(sampler_build(m.table, &m.sampler, NULL), BP_OK);
+	expansion_free(&e);
+	return m;
+}
+
+static void release(struct material *m)
+{
+	table_free(m->table);
+	sampler_free(m->sampler);
+}
+
+static const double DEGREES[] = {0, 2, 20, 45, 70, 84, 89, 89.8};
+enum { ANGLES = sizeof DEGREES / sizeof *DEGREES };
+static const struct lattice_dims SMALL = {90, 30, 36};
+
+/* wo at this polar angle, at some azimuth */
+static void outgoing(double degrees, float wo[3])
+{
+	double theta = degrees * M_PI / 180;
+	wo[0] = (float)(sin(theta) * cos(0.7));
+	wo[1] = (float)(sin(theta) * sin(0.7));
+	wo[2] = (float)cos(theta);
+}
+
+/* The largest theta_h with wi above the horizon. */
+static double horizon(double theta_o, double phi)
+{
+	return M_PI_4 + 0.5 * atan2(sin(theta_o) * cos(phi), cos(theta_o));
+}
+
+/* wi of the half-angle (theta_h, phi) in the frame of wo; returns dw_i/dw_h = 4 (wo.h) */
+static double reflect(double theta_o, double theta_h, double phi, float wi[3])
+{
+	double h[3] = {sin(theta_h) * cos(phi), sin(theta_h) * sin(phi), cos(theta_h)}, o[3] = {sin(theta_o), 0, cos(theta_o)};
+	double dot = h[0] * o[0] + h[2] * o[2], x = 2 * dot * h[0] - o[0], y = 2 * dot * h[1], z = 2 * dot * h[2] - o[2];
+	wi[0] = (float)(x * cos(0.7) - y * sin(0.7));
+	wi[1] = (float)(x * sin(0.7) + y * cos(0.7));
+	wi[2] = (float)z;
+	return 4 * dot;
+}
+
+/* Integral of the density over theta_h from a to b (as shares of its range, squared) and phi from c to d. */
+static double integrate(const struct sampler *s, double degrees, double a, double b, double c, double d, int steps_h, int steps_phi)
+{
+	double theta_o = degrees * M_PI / 180, sum = 0;
+	float wo[3], wi[3];
+	outgoing(degrees, wo);
+	for (int p = 0; p < steps_phi; p++) {
+		double phi = c + (p + 0.5) / steps_phi * (d - c), top = horizon(theta_o, phi);
+		for (int n = 0; n < steps_h; n++) {
+			double q0 = a + (b - a) * n / steps_h, q1 = a + (b - a) * (n + 1) / steps_h, q = 0.5 * (q0 + q1);
+			double area = 2 * (pow(sin(0.5 * top * q1 * q1), 2) - pow(sin(0.5 * top * q0 * q0), 2)) * (d - c) / steps_phi;
+			double jacobian = reflect(theta_o, top * q * q, phi, wi);
+			if (wi[2] > 0)
+				sum += (double)sampler_pdf(s, wi, wo) * jacobian * area;
+		}
+	}
+	return sum;
+}
+
+/* Integral over all half-angles whose wi is above the horizon; the steps share the edges that sample.h states, where the density jumps. */
+static double integrate_all(const struct sampler *s, double degrees)
+{
+	enum { STEPS = 64 * 6, PHIS = 16 * 12 };
+	double theta_o = degrees * M_PI / 180, sum = 0;
+	float wo[3], wi[3];
+	outgoing(degrees, wo);
+	for (int p = 0; p < PHIS; p++) {
+		double phi = 2 * M_PI * (p + 0.5) / PHIS, top = pow(sin(0.5 * horizon(theta_o, phi)), 2);
+		for (int n = 0; n < STEPS; n++) {
+			double from = 0.5 * pow((double)n / STEPS, 4), to = fmin(top, 0.5 * pow((n + 1.0) / STEPS, 4));
+			if (from >= top)
+				break;
+			double jacobian = reflect(theta_o, 2 * asin(sqrt(0.5 * (from + to))), phi, wi);
+			if (wi[2] > 0)
+				sum += (double)sampler_pdf(s, wi, wo) * jacobian * 2 * (to - from) * 2 * M_PI / PHIS;
+		}
+	}
+	return sum;
+}
+
+static void the_density_integrates_to_1_down_to_grazing(void **user)
+{
+	(void)user;
+	for (int kind = 0; kind < KINDS; kind++) {
+		struct material m = make((enum kind)kind, SMALL);
+		for (int n = 0; n < ANGLES; n++) {
+			double total = integrate_all(m.sampler, DEGREES[n]);
+			if (fabs(total - 1) >= 1e-3)
+				fail_msg("kind %d at %g degrees: %.6f", kind, DEGREES[n], total);
+		}
+		release(&m);
+	}
+}
+
+/*
+ * Bins of phi and of sqrt(theta_h / its largest), a prime number of each so that they share no edge with the tables;
+ * 32 quadrature steps in each bin of phi do, because a retroreflector's density jumps there.
+ */
+enum { CHI_PHI = 13, CHI_H = 19, CHI_BINS = CHI_PHI * CHI_H, SAMPLES = 40000 };
+
+static double chi_square_probability(const struct sampler *s, double degrees)
+{
+	double theta_o = degrees * M_PI / 180, count[CHI_BINS] = {0}, expected[CHI_BINS], rest_count = 0, rest = 0, chi = 0;
+	float wo[3], wi[3];
+	int bins = 0;
+	outgoing(degrees, wo);
+	for (int n = 0; n < SAMPLES; n++) {
+		const float u[3] = {(float)uniform(), (float)uniform(), (float)uniform()};
+		assert_true(sampler_draw(s, wo, u, wi) > 0);
+		double h[3], length = 0;
+		for (int c = 0; c < 3; c++) {
+			h[c] = (double)wi[c] + (double)wo[c];
+			length += h[c] * h[c];
+		}
+		double theta_h = asin(fmin(1, hypot(h[0], h[1]) / sqrt(length))), phi = atan2(h[1], h[0]) - 0.7;
+		phi -= 2 * M_PI * floor(phi / (2 * M_PI));
+		double q = sqrt(theta_h / horizon(theta_o, phi));
+		int a = (int)(phi / (2 * M_PI) * CHI_PHI), b = (int)(q * CHI_H);
+		count[(a < CHI_PHI ? a : CHI_PHI - 1) * CHI_H + (b < CHI_H ? b : CHI_H - 1)]++;
+	}
+	for (int a = 0; a < CHI_PHI; a++)
+		for (int b = 0; b < CHI_H; b++)
+			expected[a * CHI_H + b] = SAMPLES * integrate(s, degrees, (double)b / CHI_H, (double)(b + 1) / CHI_H, 2 * M_PI * a / CHI_PHI,
+			                                              2 * M_PI * (a + 1) / CHI_PHI, 20, 32);
+	for (int n = 0; n < CHI_BINS; n++)
+		if (expected[n] < 8) {
+			rest += expected[n];
+			rest_count += count[n];
+		} else {
+			chi += pow(count[n] - expected[n], 2) / expected[n];
+			bins++;
+		}
+	if (rest > 8) {
+		chi += pow(rest_count - rest, 2) / rest;
+		bins++;
+	}
+	return gsl_cdf_chisq_Q(chi, bins - 1);
+}
+
+static void samples_follow_the_density_by_chi_square(void **user)
+{
+	(void)user;
+	for (int kind = 0; kind < KINDS; kind++) {
+		struct material m = make((enum kind)kind, SMALL);
+		for (int n = 0; n < ANGLES; n++) {
+			double p = chi_square_probability(m.sampler, DEGREES[n]);
+			if (p < 0.01 / (KINDS * ANGLES)) /* 1 %, Bonferroni */
+				fail_msg("kind %d at %g degrees: p = %g", kind, DEGREES[n], p);
+		}
+		release(&m);
+	}
+}
+
+static void a_wrong_density_fails_the_chi_square_test(void **user)
+{
+	(void)user;
+	/* the density of one material, the samples of another: the test can fail */
+	struct material a = make(SATIN, SMALL);
+	float wo[3], wi[3];
+	double sum = 0;
+	outgoing(45, wo);
+	struct material b = make(SHEEN, SMALL);
+	for (int n = 0; n < 20000; n++) {
+		const float u[3] = {(float)uniform(), (float)uniform(), (float)uniform()};
+		sampler_draw(a.sampler, wo, u, wi);
+		sum += (double)(sampler_pdf(b.sampler, wi, wo) / sampler_pdf(a.sampler, wi, wo)) > 1.2;
+	}
+	assert_true(sum > 100);
+	release(&a);
+	release(&b);
+}
+
+/* Mean and relative standard deviation of mean(R, G, B) cos / pdf */
+static void weights(const struct material *m, const float wo[3], int count, int cosine_only, double *mean, double *deviation)
+{
+	double sum = 0, squares = 0;
+	for (int n = 0; n < count; n++) {
+		float wi[3], rgb[3];
+		const float u[3] = {(float)uniform(), (float)uniform(), (float)uniform()};
+		double pdf;
+		if (cosine_only) {
+			float r = sqrtf(u[0]), phi = 6.2831853f * u[1];
+			wi[0] = r * cosf(phi);
+			wi[1] = r * sinf(phi);
+			wi[2] = sqrtf(1 - u[0]);
+			pdf = (double)wi[2] / M_PI;
+		} else {
+			float p = sampler_draw(m->sampler, wo, u, wi);
+			assert_true(p > 0 && p < INFINITY);
+			assert_true(wi[2] > 0);
+			assert_true(fabsf(wi[0] * wi[0] + wi[1] * wi[1] + wi[2] * wi[2] - 1) < 3e-6f);
+			assert_true(p == sampler_pdf(m->sampler, wi, wo));
+			pdf = (double)p;
+		}
+		table_evaluate(m->table, wi, wo, rgb);
+		double weight = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3 * (double)wi[2] / pdf;
+		assert_true(isfinite(weight) && weight >= 0);
+		sum += weight;
+		squares += weight * weight;
+	}
+	*mean = sum / count;
+	*deviation = sqrt(fmax(0, squares / count - *mean * *mean)) / *mean;
+}
+
+static void the_mean_weight_is_the_albedo_and_its_spread_is_small(void **user)
+{
+	(void)user;
+	double spread = 0, spread_cosine = 0;
+	for (int kind = 0; kind < KINDS; kind++) {
+		struct material m = make((enum kind)kind, SMALL);
+		for (int n = 0; n < ANGLES; n++) {
+			float wo[3], rgb[3];
+			double mean, deviation, unused, cosine;
+			outgoing(DEGREES[n], wo);
+			weights(&m, wo, 40000, 0, &mean, &deviation);
+			weights(&m, wo, 4000, 1, &unused, &cosine);
+			sampler_albedo(m.sampler, (float)(DEGREES[n] * M_PI / 180), rgb);
+			double albedo = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3;
+			/* half a percent, and three standard errors of the sampling itself */
+			if (fabs(mean - albedo) > (0.005 + 3 * deviation / 200) * albedo)
+				fail_msg("kind %d at %g degrees: albedo %g by quadrature, %g by sampling (spread %g)", kind, DEGREES[n], albedo, mean, deviation);
+			/* near grazing cosine samples miss the highlight, and with it its spread */
+			if ((kind == GLOSSY || kind == MIRROR) && DEGREES[n] <= 70 && !(deviation < cosine))
+				fail_msg("kind %d at %g degrees: spread %g, of cosine sampling %g", kind, DEGREES[n], deviation, cosine);
+			spread += deviation;
+			spread_cosine += cosine;
+		}
+		release(&m);
+	}
+	assert_true(spread < 0.5 * spread_cosine);
+}
+
+static void numbers_at_the_ends_and_beyond_give_usable_samples(void **user)
+{
+	(void)user;
+	const float numbers[] = {0, 1e-30f, 0.06f, 0.5f, 0x1.fffffep-1f, 1, 2, -1, NAN, INFINITY};
+	enum { COUNT = sizeof numbers / sizeof *numbers };
+	for (int kind = 0; kind < KINDS; kind++) {
+		struct material m = make((enum kind)kind, SMALL);
+		for (int n = 0; n < COUNT * COUNT * COUNT; n++)
+			for (int a = 0; a < ANGLES + 3; a++) {
+				const float extra[3][3] = {{1, 0, 1e-7f}, {1, 0, 1e-20f}, {0.3f, 0.3f, 1e-30f}};
+				float wo[3], wi[3];
+				const float u[3] = {numbers[n % COUNT], numbers[n / COUNT % COUNT], numbers[n / COUNT / COUNT]};
+				if (a < ANGLES)
+					outgoing(DEGREES[a], wo);
+				else
+					memcpy(wo, extra[a - ANGLES], sizeof wo);
+				float p = sampler_draw(m.sampler, wo, u, wi);
+				assert_true(p > 0 && p < INFINITY);
+				assert_true(wi[2] > 0 && wi[2] <= 1.000001f && fabsf(wi[0]) < 1.000001f && fabsf(wi[1]) < 1.000001f);
+			}
+		release(&m);
+	}
+}
+
+static void unusable_directions_give_no_sample_and_no_density(void **user)
+{
+	(void)user;
+	const float good[3] = {0.6f, 0, 0.8f}, u[3] = {0.5f, 0.5f, 0.5f};
+	const float bad[][3] = {{0, 0, 0}, {0.6f, 0, -0.8f}, {1, 0, 0}, {NAN, 0, 1}, {0, 0, NAN}, {INFINITY, 0, 1}, {0, 0, INFINITY}, {1e30f, 0, 1e30f}};
+	struct material m = make(SATIN, SMALL);
+	for (size_t n = 0; n < sizeof bad / sizeof *bad; n++) {
+		float wi[3] = {7, 7, 7};
+		assert_true(sampler_draw(m.sampler, bad[n], u, wi) == 0);
+		assert_true(wi[0] == 0 && wi[1] == 0 && wi[2] == 0);
+		assert_true(sampler_pdf(m.sampler, bad[n], good) == 0);
+		assert_true(sampler_pdf(m.sampler, good, bad[n]) == 0);
+	}
+	const float angles[] = {-0.1f, 1.6f, NAN, INFINITY};
+	for (int n = 0; n < 4; n++) {
+		float rgb[3] = {7, 7, 7};
+		sampler_albedo(m.sampler, angles[n], rgb);
+		assert_true(rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0);
+	}
+	/* other lengths count as normalised */
+	const float longer[3] = {3, 0, 4};
+	assert_true(fabsf(sampler_pdf(m.sampler, longer, good) / sampler_pdf(m.sampler, good, good) - 1) < 1e-3f);
+	release(&m);
+}
+
+static void a_black_material_still_gives_samples(void **user)
+{
+	(void)user;
+	struct expansion e;
+	struct material m;
+	assert_int_equal(expansion_alloc((struct lattice_dims){4, 4, 4}, &e, NULL), BP_OK);
+	e.unit = 1;
+	assert_int_equal(table_build(&e, TABLE_COMPACT, 3, &m.table, NULL), BP_OK);
+	assert_int_equal(sampler_build(m.table, &m.sampler, NULL), BP_OK);
+	for (int n = 0; n < ANGLES; n++) {
+		double total = integrate_all(m.sampler, DEGREES[n]);
+		if (fabs(total - 1) >= 1e-3)
+			fail_msg("black at %g degrees: %.6f", DEGREES[n], total);
+	}
+	expansion_free(&e);
+	release(&m);
+}
+
+struct job {
+	const struct material *material;
+	double sum;
+};
+
+static void *work(void *user)
+{
+	struct job *job = user;
+	uint64_t x = 5;
+	for (int n = 0; n < 20000; n++) {
+		float u[3], wo[3], wi[3], rgb[3];
+		for (int c = 0; c < 3; c++) {
+			x = x * 6364136223846793005u + 1442695040888963407u;
+			u[c] = (float)(x >> 40) * 0x1p-24f;
+		}
+		outgoing(89.0 * n / 20000, wo);
+		job->sum += (double)sampler_draw(job->material->sampler, wo, u, wi);
+		table_evaluate(job->material->table, wi, wo, rgb);
+		job->sum += (double)rgb[1];
+	}
+	return NULL;
+}
+
+static void many_threads_use_one_material_and_get_the_same(void **user)
+{
+	(void)user;
+	enum { THREADS = 6 };
+	struct material m = make(GLOSSY, SMALL);
+	struct job jobs[THREADS];
+	pthread_t threads[THREADS];
+	for (int n = 0; n < THREADS; n++) {
+		jobs[n] = (struct job){&m, 0};
+		assert_int_equal(pthread_create(&threads[n], NULL, work, &jobs[n]), 0);
+	}
+	for (int n = 0; n < THREADS; n++)
+		pthread_join(threads[n], NULL);
+	for (int n = 1; n < THREADS; n++)
+		assert_true(jobs[n].sum == jobs[0].sum);
+	release(&m);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(the_density_integrates_to_1_down_to_grazing),
+		cmocka_unit_test(samples_follow_the_density_by_chi_square),
+		cmocka_unit_test(a_wrong_density_fails_the_chi_square_test),
+		cmocka_unit_test(the_mean_weight_is_the_albedo_and_its_spread_is_small),
+		cmocka_unit_test(numbers_at_the_ends_and_beyond_give_usable_samples),
+		cmocka_unit_test(unusable_directions_give_no_sample_and_no_density),
+		cmocka_unit_test(a_black_material_still_gives_samples),
+		cmocka_unit_test(many_threads_use_one_material_and_get_the_same),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
