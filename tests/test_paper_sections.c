@@ -141,9 +141,9 @@ static void a_model_comes_back_equal(void **state)
 	struct packed packed;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
-	assert_int_equal(packed.head.layer_count, 2);
+	assert_int_equal(packed.head.layer_count, 3);
 	assert_int_equal(packed.head.left_out, 0);
-	assert_int_equal(unpack(&packed, dims, 2, &again, NULL), BP_OK);
+	assert_int_equal(unpack(&packed, dims, 3, &again, NULL), BP_OK);
 	assert_true(again->paper->scale == model->paper->scale);
 	assert_memory_equal(again->paper->marginal[0], model->paper->marginal[0], 90 * sizeof(float));
 	assert_memory_equal(again->paper->marginal[2], model->paper->marginal[2], 180 * sizeof(float));
@@ -189,14 +189,14 @@ static void pairs_that_are_1_take_no_bytes(void **state)
 	model_drop(model);
 }
 
-static void the_first_layer_has_the_pairs_only(void **state)
+static void the_second_layer_adds_the_pairs_only(void **state)
 {
 	struct lattice_dims dims = { 8, 8, 8 };
 	struct model *model = model_make(dims, 5, 4, 4, 100), *again = NULL;
 	struct packed packed;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
-	assert_int_equal(unpack(&packed, dims, 1, &again, NULL), BP_OK);
+	assert_int_equal(unpack(&packed, dims, 2, &again, NULL), BP_OK);
 	assert_fields_equal(&again->paper->hd, &model->paper->hd);
 	assert_int_equal(again->paper->slice_count, 1);
 	model_drop(again);
@@ -218,7 +218,7 @@ static void a_small_budget_drops_the_smallest_levels(void **state)
 		assert_int_equal(pack(model, budgets[i], &packed, NULL), BP_OK);
 		assert_true(packed.record_bytes <= budgets[i]);
 		assert_true(packed.record_bytes >= budgets[i] - budgets[i] / 20);
-		assert_int_equal(unpack(&packed, dims, 2, &again, NULL), BP_OK);
+		assert_int_equal(unpack(&packed, dims, 3, &again, NULL), BP_OK);
 		for (uint32_t k = 0; k < again->paper->hphi.count; k++)
 			if (abs(again->paper->hphi.level[k]) < least)
 				least = abs(again->paper->hphi.level[k]);
@@ -250,14 +250,14 @@ static void damaged_sections_never_crash_the_decoder(void **state)
 			for (int value = 0; value < 256; value += i < 16 ? 1 : 17) {
 				uint8_t *byte = &packed.sections.bytes[s].bytes[i], kept = *byte;
 				*byte = (uint8_t)value;
-				if (unpack(&packed, dims, 2, &again, NULL) == BP_OK)
+				if (unpack(&packed, dims, 3, &again, NULL) == BP_OK)
 					model_drop(again);
 				*byte = kept;
 			}
 	for (uint32_t s = 0; s < packed.sections.count; s++)
 		for (uint32_t count = packed.sections.entry[s].bytes; count-- > 0;) {
 			packed.sections.entry[s].bytes = count;
-			assert_int_equal(unpack(&packed, dims, 2, &again, NULL), BP_ERROR_CORRUPT);
+			assert_int_equal(unpack(&packed, dims, 3, &again, NULL), BP_ERROR_CORRUPT);
 			packed.sections.entry[s].bytes = (uint32_t)packed.sections.bytes[s].count;
 		}
 	section_list_free(&packed.sections);
@@ -289,7 +289,7 @@ int main(void)
 		cmocka_unit_test(a_model_comes_back_equal),
 		cmocka_unit_test(the_hardest_model_fits_the_papers_size),
 		cmocka_unit_test(pairs_that_are_1_take_no_bytes),
-		cmocka_unit_test(the_first_layer_has_the_pairs_only),
+		cmocka_unit_test(the_second_layer_adds_the_pairs_only),
 		cmocka_unit_test(a_small_budget_drops_the_smallest_levels),
 		cmocka_unit_test(damaged_sections_never_crash_the_decoder),
 		cmocka_unit_test(a_claim_of_millions_of_coefficients_allocates_nothing),

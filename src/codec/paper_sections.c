@@ -11,7 +11,6 @@
 #include "profile_codec.h"
 #include "sparse_code.h"
 
-enum { LAYER_PAIRS = 0, LAYER_SLICES = 1 };
 enum { CODEC_RAW = 0, CODEC_SPARSE = 1 };
 enum { LEFT_OUT_HD = 1, LEFT_OUT_HPHI = 2, LEFT_OUT_SLICES = 4 };
 
@@ -22,19 +21,6 @@ static const struct section_kind KINDS[] = {
 	{ SECTION_SLICES, CODEC_SPARSE, 1 },
 };
 
-static uint32_t plane_extent(uint32_t extent)
-{
-	uint32_t plane = 8;
-	while (plane < extent)
-		plane *= 2;
-	return plane;
-}
-
-static uint32_t plane_cells(uint32_t rows, uint32_t columns)
-{
-	return plane_extent(rows) * plane_extent(columns);
-}
-
 static uint32_t marginal_count(struct lattice_dims dims, int axis)
 {
 	return axis == 0 ? dims.theta_h : axis == 1 ? dims.theta_d : dims.phi_d;
@@ -44,7 +30,7 @@ static uint32_t marginal_count(struct lattice_dims dims, int axis)
 
 static void marginals_write(const struct model *model, struct section_list *sections)
 {
-	struct byte_buffer *out = section_add(sections, SECTION_MARGINALS, CODEC_RAW, 1, LAYER_PAIRS, SECTION_REQUIRED, NAN);
+	struct byte_buffer *out = section_add(sections, SECTION_MARGINALS, CODEC_RAW, 1, PAPER_LAYER_MARGINALS, SECTION_REQUIRED, NAN);
 	write_f64(out, model->paper->scale);
 	for (int axis = 0; axis < 3; axis++)
 		for (uint32_t i = 0; i < marginal_count(model->dims, axis); i++)
@@ -81,21 +67,21 @@ static bp_status model_write(const struct model *model, struct section_list *sec
 		slices_kept += paper->slice[i].count > 0;
 	marginals_write(model, sections);
 	if (paper->hd.count)
-		status = fields_write(&paper->hd, 1, section_add(sections, SECTION_PAIR_HD, CODEC_SPARSE, 1, LAYER_PAIRS, SECTION_REQUIRED, NAN), error);
+		status = fields_write(&paper->hd, 1, section_add(sections, SECTION_PAIR_HD, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, SECTION_REQUIRED, NAN), error);
 	else
 		omitted |= LEFT_OUT_HD;
 	if (!status && paper->hphi.count)
-		status = fields_write(&paper->hphi, 1, section_add(sections, SECTION_PAIR_HPHI, CODEC_SPARSE, 1, LAYER_PAIRS, SECTION_REQUIRED, NAN), error);
+		status = fields_write(&paper->hphi, 1, section_add(sections, SECTION_PAIR_HPHI, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, SECTION_REQUIRED, NAN), error);
 	else if (!paper->hphi.count)
 		omitted |= LEFT_OUT_HPHI;
 	if (!status && slices_kept) {
-		struct byte_buffer *out = section_add(sections, SECTION_SLICES, CODEC_SPARSE, 1, LAYER_SLICES, SECTION_REQUIRED, NAN);
+		struct byte_buffer *out = section_add(sections, SECTION_SLICES, CODEC_SPARSE, 1, PAPER_LAYER_SLICES, SECTION_REQUIRED, NAN);
 		write_u32(out, paper->slice_count);
 		status = fields_write(paper->slice, paper->slice_count, out, error);
 	} else if (!slices_kept) {
 		omitted |= LEFT_OUT_SLICES;
 	}
-	*layer_count = slices_kept ? 2 : 1;
+	*layer_count = slices_kept ? PAPER_LAYERS : paper->hd.count || paper->hphi.count ? PAPER_LAYER_PAIRS + 1 : 1;
 	*left_out = omitted;
 	return status;
 }
@@ -252,7 +238,7 @@ static bp_status marginals_read(const struct section_bytes *section, struct mode
 static bp_status fields_read(struct byte_reader *in, uint32_t rows, uint32_t columns, struct sparse_field *fields,
                              uint32_t count, bp_error *error)
 {
-	uint32_t cells = plane_cells(rows, columns);
+	uint32_t cells = paper_plane_cells(rows, columns);
 	uint64_t total = 0;
 	struct sparse_models *models = NULL;
 	struct range_decoder decoder;
@@ -354,6 +340,7 @@ static bp_status paper_decode(const struct record_head *head, const struct secti
 {
 	uint32_t seen = 0;
 	bp_status status = paper_start(model, error);
+	(void)head;
 	for (uint32_t i = 0; !status && i < count; i++) {
 		uint32_t bit = 1u << sections[i].entry->type;
 		*failed = i;
@@ -365,9 +352,8 @@ static bp_status paper_decode(const struct record_head *head, const struct secti
 	if (status)
 		return status;
 	*failed = UINT32_MAX;
-	if (!(seen & 1u << SECTION_MARGINALS) || !(seen & 1u << SECTION_PAIR_HD) != !!(head->left_out & LEFT_OUT_HD) ||
-	    !(seen & 1u << SECTION_PAIR_HPHI) != !!(head->left_out & LEFT_OUT_HPHI))
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the marginals or a pair's section are missing, or one too many is there");
+	if (!(seen & 1u << SECTION_MARGINALS))
+		return error_set(error, BP_ERROR_CORRUPT, 0, "the section of the marginals is missing");
 	return BP_OK;
 }
 

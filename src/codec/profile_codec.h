@@ -28,6 +28,7 @@ struct section_kind {
 struct profile_codec {
 	enum profile profile;
 	uint32_t version; /* goes into the record's head; changes when the same input and options would give other bytes */
+	bool meets_max_error; /* encode looks after options->max_error itself; otherwise record_pack tries budgets */
 	const struct section_kind *kinds;
 	uint32_t kind_count;
 	/*

@@ -1,12 +1,12 @@
 #include "record.h"
 
-#include <math.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../error.h"
 #include "../model/fidelity.h"
+#include "name.h"
 #include "profile_codec.h"
 
 /* ---- decoding ---- */
@@ -151,51 +151,130 @@ static void head_fill(struct record_head *head, const struct model *model, const
 	head->source = *source;
 }
 
-bp_status record_pack(const struct lattice *lattice, const char *name, const struct record_source *source,
-                      const struct fit_options *options, uint8_t **out_record, size_t *out_bytes, struct record_head *out_head,
-                      bp_error *error)
-{
-	const struct profile_codec *codec = profile_codec_find(options->profile);
-	struct encode_request request = { .options = options, .record_bytes_max = options->budget_bytes };
-	struct section_list sections = { 0 };
+/* What stays the same while records of several sizes are tried. */
+struct packing {
+	const struct lattice *lattice;
+	const struct profile_codec *codec;
+	const struct model *model;
+	struct encode_request request;
+	struct record_head head; /* the constant parts filled */
+};
+
+struct packed {
 	struct record_head head;
-	struct model *model = NULL;
-	uint8_t *record = NULL;
-	size_t record_bytes = 0;
+	uint8_t *record; /* malloc'ed */
+	size_t bytes;
+};
+
+/* One record of at most record_bytes_max, its layers measured. */
+static bp_status record_build(const struct packing *packing, uint32_t record_bytes_max, struct packed *out, bp_error *error)
+{
+	struct packed packed = { .head = packing->head };
+	struct encode_request request = packing->request;
+	struct section_list sections = { 0 };
 	bp_status status;
 
-	request.name_bytes = strlen(name);
-	if (!codec || request.name_bytes > RECORD_NAME_BYTES_MAX)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, codec ? "the name is longer than 255 bytes" : "no such profile");
-	status = model_fit(lattice, options, &model, error);
-	if (status)
-		return status;
-	head_fill(&head, model, name, source, options, codec->version);
-	status = codec->encode(model, &request, &sections, &head.layer_count, &head.left_out, error);
+	request.record_bytes_max = record_bytes_max;
+	status = packing->codec->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, error);
 	if (status)
 		goto out;
 	/* Once to have the bytes that are decoded, once more with what was measured on them. */
-	status = record_write(&head, &sections, &record, &record_bytes, error);
-	if (status)
-		goto out;
-	status = layers_measure(&head, record, lattice, error);
-	free(record);
-	record = NULL;
+	status = record_write(&packed.head, &sections, &packed.record, &packed.bytes, error);
 	if (!status)
-		status = record_write(&head, &sections, &record, &record_bytes, error);
-	if (!status && head.record_bytes > request.record_bytes_max)
-		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the record takes %u bytes, the budget is %u", head.record_bytes,
-		                   request.record_bytes_max);
-	if (!status && out_head)
-		status = record_head_parse(record, record_bytes, out_head, error);
-	if (status) {
-		free(record);
-		goto out;
+		status = layers_measure(&packed.head, packed.record, packing->lattice, error);
+	free(packed.record);
+	packed.record = NULL;
+	if (!status)
+		status = record_write(&packed.head, &sections, &packed.record, &packed.bytes, error);
+	if (!status && packed.bytes > record_bytes_max) {
+		free(packed.record);
+		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the record takes %zu bytes, the budget is %u", packed.bytes,
+		                   record_bytes_max);
 	}
-	*out_record = record;
-	*out_bytes = record_bytes;
+	if (!status)
+		*out = packed;
 out:
 	section_list_free(&sections);
-	model_free(model);
 	return status;
+}
+
+static double last_error(const struct packed *packed)
+{
+	return packed->head.layers[packed->head.layer_count - 1].fidelity.log_rmse;
+}
+
+/*
+ * The smallest record whose error is at most max_error, found by halving the budget's range down to 1 % of itself:
+ * the error does not fall with every byte, so a smaller record may exist that this does not find.
+ */
+static bp_status record_search(const struct packing *packing, double max_error, struct packed *best, bp_error *error)
+{
+	uint32_t low = RECORD_BUDGET_MIN, high; /* high satisfies, low is not known to */
+	bp_status status = record_build(packing, RECORD_BUDGET_MAX, best, error);
+	if (status)
+		return status;
+	if (last_error(best) > max_error) {
+		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "an error of %g cannot be met: the least is %g, in %zu bytes",
+		                   max_error, last_error(best), best->bytes);
+		free(best->record);
+		best->record = NULL;
+		return status;
+	}
+	high = (uint32_t)best->bytes;
+	while (high > low && high - low > high / 100) {
+		uint32_t middle = low + (high - low) / 2;
+		struct packed trial = { .record = NULL };
+		status = record_build(packing, middle, &trial, error);
+		if (status && status != BP_ERROR_LIMIT) {
+			free(best->record);
+			best->record = NULL;
+			return status;
+		}
+		if (status || last_error(&trial) > max_error) {
+			free(trial.record);
+			low = middle;
+		} else {
+			free(best->record);
+			*best = trial;
+			high = (uint32_t)trial.bytes;
+		}
+	}
+	return BP_OK;
+}
+
+bp_status record_pack(const struct lattice *lattice, const char *name, const struct record_source *source,
+                      const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
+                      bp_error *error)
+{
+	struct packing packing = { .lattice = lattice, .codec = profile_codec_find(options->profile) };
+	struct packed packed = { .record = NULL };
+	struct model *model = NULL;
+	size_t name_bytes = strlen(name);
+	const char *fault = name_fault(name, name_bytes);
+	bp_status status;
+
+	if (!packing.codec)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no profile %d", (int)options->profile);
+	if (fault)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);
+	status = model_fit(lattice, options, &model, error);
+	if (status)
+		return status;
+	packing.model = model;
+	packing.request = (struct encode_request){ .options = options, .name_bytes = name_bytes };
+	head_fill(&packing.head, model, name, source, options, packing.codec->version);
+	if (options->max_error > 0 && !packing.codec->meets_max_error)
+		status = record_search(&packing, options->max_error, &packed, error);
+	else
+		status = record_build(&packing, options->max_error > 0 ? RECORD_BUDGET_MAX : options->budget_bytes, &packed, error);
+	if (!status && head)
+		status = record_head_parse(packed.record, packed.bytes, head, error);
+	model_free(model);
+	if (status) {
+		free(packed.record);
+		return status;
+	}
+	*record = packed.record;
+	*record_bytes = packed.bytes;
+	return BP_OK;
 }

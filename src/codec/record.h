@@ -14,6 +14,9 @@ enum { RECORD_NAME_BYTES_MAX = 255, RECORD_SECTIONS_MAX = 64, SHA256_BYTES = 32 
 /* Largest record that a reader accepts, largest head, and the smallest of each. */
 enum { RECORD_BYTES_MAX = 1 << 24, RECORD_HEAD_BYTES_MAX = 4096, RECORD_HEAD_BYTES_MIN = 208 + 32 + 1 + 4 };
 
+/* What --budget may ask for. */
+enum { RECORD_BUDGET_MIN = 1000, RECORD_BUDGET_MAX = 4000000 };
+
 /* Every record begins with these bytes. */
 #define RECORD_MAGIC "\x8b" "REC\r\n\x1a\n"
 enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 1 };
@@ -77,7 +80,9 @@ uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t sect
 /*
  * Fits and encodes one material: *record is malloc'ed (the caller frees it). The head, parsed
  * from the very bytes, is stored in *head when that is not NULL. A record never exceeds
- * options->budget_bytes; BP_ERROR_LIMIT names the least possible budget otherwise.
+ * options->budget_bytes; BP_ERROR_LIMIT names the least possible budget otherwise. With
+ * options->max_error > 0 the budget does not count: the record is the smallest found whose log RMSE is at
+ * most max_error; BP_ERROR_LIMIT says what was reached when 4,000,000 bytes do not suffice.
  */
 bp_status record_pack(const struct lattice *lattice, const char *name, const struct record_source *source,
                       const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,

@@ -1,0 +1,436 @@
+#!/usr/bin/env python3
+"""Reads brdfpack archives, slowly: a second reader made from format-spec/FORMAT.md alone.
+
+    read_bpk.py list ARCHIVE                     one line per material
+    read_bpk.py verify ARCHIVE                   checks everything, decodes every layer
+    read_bpk.py decode [--layers N] ARCHIVE NAME decoded values as JSON:
+                                                 {"dims": [H, D, P], "rgb": [[...], [...], [...]]}
+
+Needs Python 3.7 and nothing else. Exit status: 0 ok, 1 the archive is not, 2 usage. Chapter numbers in
+comments are FORMAT.md's.
+"""
+import json
+import math
+import struct
+import sys
+import zlib
+
+
+class Fault(Exception):
+    """kind: "not ours", "unsupported", "checksum" or "corrupt" (chapter 1)."""
+
+    def __init__(self, kind, offset, text):
+        super().__init__(f"{kind} at offset {offset}: {text}")
+        self.kind = kind
+
+
+def demand(condition, kind, offset, text):
+    if not condition:
+        raise Fault(kind, offset, text)
+
+
+# ---- 2: names ----
+
+def check_name(raw, offset):
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        raise Fault("corrupt", offset, "a name is not UTF-8")
+    demand(1 <= len(raw) <= 255 and text not in (".", ".."), "corrupt", offset, "an illegal name")
+    demand(not any(ord(c) < 0x20 or 0x7F <= ord(c) < 0xA0 or c == "/" for c in text), "corrupt", offset, "an illegal name")
+    return text
+
+
+# ---- 3, 4: header and index ----
+
+class Archive:
+    PAGE = 4096
+
+    def __init__(self, path):
+        self.file = open(path, "rb")
+        self.file.seek(0, 2)
+        self.size = self.file.tell()
+        head = self.read(0, min(64, self.size))
+        demand(head[:8] == b"\x8bBPK\r\n\x1a\n", "not ours", 0, "no archive magic")
+        demand(len(head) == 64, "corrupt", self.size, "the header is cut")
+        demand(zlib.crc32(head[:60]) == struct.unpack_from("<I", head, 60)[0], "checksum", 60, "header")
+        major, minor, flags, size, self.count, self.index, self.pages, self.depth = struct.unpack_from("<HHIQQQII", head, 8)
+        demand(major == 1, "unsupported", 8, f"version {major}.{minor}")
+        demand(flags & 0xFFFF == 0, "unsupported", 12, f"flags {flags:#x}")
+        demand(minor > 0 or head[48:60] == bytes(12), "corrupt", 48, "reserved bytes")
+        demand(size == self.size, "corrupt", min(size, self.size), "the file was cut or extended")
+        demand(self.count <= 100000000 and self.pages <= 16000000 and self.depth <= 8 and self.depth <= self.pages and
+               (self.count == 0) == (self.pages == 0) == (self.depth == 0), "corrupt", 24, "counts")
+        demand(self.index >= 64 and self.index + self.PAGE * self.pages == size, "corrupt", 32, "index offset")
+
+    def read(self, offset, count):
+        self.file.seek(offset)
+        data = self.file.read(count)
+        demand(len(data) == count, "corrupt", offset + len(data), "the file ends here")
+        return data
+
+    def page(self, number, level, first_ordinal, first_name):
+        """[(name, first ordinal, child)] of an inner page, [(name, ordinal, offset, bytes, head bytes)] of a leaf."""
+        demand(0 <= number < self.pages, "corrupt", self.index, "a page number")
+        base = self.index + self.PAGE * number
+        data = self.read(base, self.PAGE)
+        demand(data[:4] == b"\x8bIDX", "corrupt", base, "no page magic")
+        demand(zlib.crc32(data[:4092]) == struct.unpack_from("<I", data, 4092)[0], "checksum", base + 4092, "index page")
+        its_level, count, ordinal = struct.unpack_from("<HHQ", data, 4)
+        demand(its_level == level and ordinal == first_ordinal and 1 <= count <= 255, "corrupt", base + 4, "page head")
+        entries, at, fixed = [], 16, 13 if level else 17
+        for i in range(count):
+            demand(at + fixed <= 4092 and at + fixed + data[at + fixed - 1] <= 4092, "corrupt", base + at, "entry")
+            raw = data[at + fixed:at + fixed + data[at + fixed - 1]]
+            check_name(raw, base + at)
+            demand(not entries or entries[-1][0] < raw, "corrupt", base + at, "names do not ascend")
+            if level:
+                child, first = struct.unpack_from("<IQ", data, at)
+                demand(child < number, "corrupt", base + at, "child page")
+                demand(first > entries[-1][1] if entries else first == ordinal, "corrupt", base + at, "ordinals")
+                entries.append((raw, first, child))
+            else:
+                offset, size, head = struct.unpack_from("<QII", data, at)
+                demand(245 <= head <= 4096 and head <= size <= 1 << 24, "corrupt", base + at, "entry's sizes")
+                demand(64 <= offset and offset + size <= self.index, "corrupt", base + at, "entry's offset")
+                entries.append((raw, ordinal + i, offset, size, head))
+            at += fixed + len(raw)
+        demand(data[at:4092] == bytes(4092 - at), "corrupt", base + at, "padding")
+        demand(first_name is None or entries[0][0] == first_name, "corrupt", base + 16, "not the name its parent says")
+        return entries
+
+    def walk(self):
+        """All leaf entries in order, checking the tree as a whole."""
+        seen, last, ordinal, end = 0, b"", 0, 64
+        todo = [(self.pages - 1, self.depth - 1, 0, None)] if self.pages else []
+        while todo:
+            number, level, first, name = todo.pop()
+            seen += 1
+            demand(seen <= self.pages, "corrupt", self.index, "pages are used twice")
+            entries = self.page(number, level, first, name)
+            if level:
+                todo += [(child, level - 1, its_first, its_name) for its_name, its_first, child in reversed(entries)]
+                continue
+            for entry in entries:
+                demand(entry[0] > last and entry[1] == ordinal, "corrupt", self.index + self.PAGE * number, "order of materials")
+                demand(entry[2] == end, "corrupt", end, "a gap or an overlap")
+                last, ordinal, end = entry[0], ordinal + 1, entry[2] + entry[3]
+                yield entry
+        demand(ordinal == self.count and seen == self.pages and end == self.index, "corrupt", self.index, "totals")
+
+    def find(self, name):
+        raw = name.encode()
+        demand(self.count > 0, "not found", 0, name)
+        number, level, first, its_name = self.pages - 1, self.depth - 1, 0, None
+        while True:
+            entries = self.page(number, level, first, its_name)
+            at = max((i for i, e in enumerate(entries) if e[0] <= raw), default=0)
+            if level == 0:
+                demand(entries[at][0] == raw, "not found", 0, name)
+                return entries[at]
+            its_name, first, number = entries[at]
+            level -= 1
+
+    def record(self, entry):
+        return Record(self, entry)
+
+
+# ---- 5: records ----
+
+class Record:
+    def __init__(self, archive, entry):
+        self.archive, self.base = archive, entry[2]
+        head = archive.read(self.base, entry[4])
+        at = self.base
+        demand(head[:8] == b"\x8bREC\r\n\x1a\n", "corrupt", at, "no record magic")
+        self.head_bytes, self.bytes = struct.unpack_from("<II", head, 8)
+        demand(self.head_bytes == entry[4] and self.bytes == entry[3], "corrupt", at + 8, "sizes differ from the index")
+        demand(zlib.crc32(head[:-4]) == struct.unpack("<I", head[-4:])[0], "checksum", at + self.head_bytes - 4, "record's head")
+        (version, self.profile, self.codec_version, h, d, p, n, layers, sections, self.left_out, self.budget, self.max_error,
+         self.effort, reserved, self.horizon, self.source_bytes) = struct.unpack_from("<HHIHHHBBHHIdIIdQ", head, 16)
+        demand(version == 1, "unsupported", at + 16, f"record version {version}")
+        self.dims = (h, d, p)
+        demand(all(4 <= x <= 1024 for x in self.dims) and h * d * p <= 1 << 24, "corrupt", at + 24, "lattice")
+        demand(1 <= layers <= 16 and sections <= 64 and n >= 1, "corrupt", at + 30, "counts")
+        demand(self.head_bytes == 212 + 32 * (layers + sections) + n, "corrupt", at + 8, "head bytes")
+        demand(0 <= self.max_error < math.inf and self.effort <= 9 and reserved == 0, "corrupt", at + 40, "options")
+        demand(-1 <= self.horizon <= 0, "corrupt", at + 56, "horizon")
+        self.sha256 = head[72:104].hex()
+        self.colour = [struct.unpack_from("<dddII", head, 112 + 32 * c) for c in range(3)]
+        for diffuse, specular, rejected, _, converged in self.colour:
+            demand(math.isfinite(diffuse) and math.isfinite(specular) and 0 <= rejected <= 1 and converged <= 1,
+                   "corrupt", at + 112, "colour")
+        self.layers = [struct.unpack_from("<IIddd", head, 208 + 32 * i) for i in range(layers)]
+        self.sections = [struct.unpack_from("<HHHHHHIIId", head, 208 + 32 * (layers + i)) for i in range(sections)]
+        end, before = self.head_bytes, 0
+        for kind, codec, version, layer, flags, reserved, offset, size, crc, error in self.sections:
+            demand(reserved == 0 and before <= layer < layers and offset == end and size >= 1, "corrupt", at + 208, "section table")
+            end, before = end + size, layer
+        demand(end == self.bytes, "corrupt", at + 12, "record bytes")
+        for number, (size, reserved, *figures) in enumerate(self.layers):
+            ends = [s[6] + s[7] for s in self.sections if s[3] <= number]
+            demand(size == max(ends, default=self.head_bytes) and reserved == 0 and all(f >= 0 for f in figures),
+                   "corrupt", at + 208, "layer table")
+        self.name = check_name(head[-4 - n:-4], at)
+        demand(self.name.encode() == entry[0], "corrupt", at, "not the name that the index says")
+
+    def section(self, entry):
+        """Its bytes, checked."""
+        data = self.archive.read(self.base + entry[6], entry[7])
+        demand(zlib.crc32(data) == entry[8], "checksum", self.base + entry[6], f"section of type {entry[0]}")
+        return data
+
+    def load(self, layers, known):
+        """{type: bytes} of the sections of layers 0..layers-1 whose (type, codec, version) is known."""
+        found = {}
+        for entry in self.sections:
+            if entry[3] >= layers:
+                continue
+            if entry[:3] not in known:
+                demand(not entry[4] & 1, "unsupported", self.base + entry[6], f"section {entry[:3]}")
+                continue
+            demand(entry[0] not in found, "corrupt", self.base + entry[6], "a section twice")
+            found[entry[0]] = self.section(entry)
+        return found
+
+    def decode(self, layers=0):
+        """Three lists of H * D * P values, in 1/sr."""
+        layers = min(layers or len(self.layers), len(self.layers))
+        demand(self.profile in DECODERS, "unsupported", self.base + 18, f"profile {self.profile}")
+        return DECODERS[self.profile](self, layers)
+
+
+# ---- 7: range coder ----
+
+class RangeDecoder:
+    def __init__(self, data):
+        self.data, self.at, self.range, self.code = data, 0, 0xFFFFFFFF, 0
+        for _ in range(4):
+            self.code = self.code << 8 | self.byte()
+
+    def byte(self):
+        self.at += 1
+        return self.data[self.at - 1] if self.at <= len(self.data) else 0
+
+    def refill(self):
+        while self.range < 1 << 24:
+            self.range <<= 8
+            self.code = self.code << 8 | self.byte()
+
+    def bit(self, model):
+        p, s = model
+        shift = min(2 + s // 4, 7)
+        if shift < 7:
+            s += 1
+        bound = (self.range >> 16) * p
+        if self.code < bound:
+            bit, self.range, p = 0, bound, p + (65536 - p >> shift)
+        else:
+            bit, self.code, self.range, p = 1, self.code - bound, self.range - bound, p - (p >> shift)
+        model[:] = p, s
+        self.refill()
+        return bit
+
+    def even(self, count):
+        value = 0
+        for _ in range(count):
+            self.range >>= 1
+            bit = int(self.code >= self.range)
+            if bit:
+                self.code -= self.range
+            value = value << 1 | bit
+            self.refill()
+        return value
+
+
+def bit_models(count):
+    return [[32768, 0] for _ in range(count)]
+
+
+class Gamma:
+    def __init__(self):
+        self.length, self.first, self.second = bit_models(24), bit_models(24), [bit_models(2) for _ in range(24)]
+
+    def decode(self, coder):
+        n = 0
+        while n < 23 and coder.bit(self.length[n]):
+            n += 1
+        v = 1
+        if n >= 1:
+            f = coder.bit(self.first[n])
+            v = 2 * v + f
+        if n >= 2:
+            v = 2 * v + coder.bit(self.second[n][f])
+            v = (v << n - 2) + coder.even(n - 2)
+        return v - 1
+
+
+def size_class(number):
+    return (number + 1).bit_length() - 1
+
+
+# ---- 8: the paper's profile ----
+
+HAAR = [math.sqrt(0.5)] * 2
+DAUBECHIES = [(a + b * math.sqrt(3)) / (4 * math.sqrt(2)) for a, b in ((1, 1), (3, 1), (3, -1), (1, -1))]
+
+
+def plane_axis(n):
+    """(levels, cells) of the transform's axis for a field of n cells."""
+    levels = n.bit_length() - 2
+    return levels, (n + (1 << levels) - 1 >> levels) << levels
+
+
+def inverse_line(line, levels, low):
+    high = [(-1) ** k * x for k, x in enumerate(reversed(low))]
+    for level in reversed(range(levels)):
+        n = len(line) >> level
+        joined = [0.0] * n
+        for i in range(n // 2):
+            for k in range(len(low)):
+                joined[(2 * i + k) % n] += low[k] * line[i] + high[k] * line[n // 2 + i]
+        line[:n] = joined
+    return line
+
+
+class Field:
+    """A sparse field: a density over rows x columns, 1 everywhere without coefficients."""
+
+    def __init__(self, rows, columns, count, step, low):
+        self.rows, self.columns, self.count, self.step, self.low = rows, columns, count, step, low
+        self.coefficients = {}
+
+    def expand(self):
+        if not self.count:
+            return [[1.0] * self.columns for _ in range(self.rows)]
+        (row_levels, m), (column_levels, n) = plane_axis(self.rows), plane_axis(self.columns)
+        plane = [[0.0] * n for _ in range(m)]
+        for index, value in self.coefficients.items():
+            plane[index // n][index % n] = value
+        plane = [inverse_line(row, column_levels, self.low) for row in plane]
+        plane = [inverse_line(list(column), row_levels, self.low) for column in zip(*plane)]
+        return [[max(plane[c][r], 0.0) for c in range(self.columns)] for r in range(self.rows)]
+
+
+def read_fields(data, at, count, rows, columns, low):
+    fields = []
+    demand(len(data) >= at + 8 * count, "corrupt", 0, "a section of coefficients is short")
+    cells = plane_axis(rows)[1] * plane_axis(columns)[1]
+    for i in range(count):
+        kept, step = struct.unpack_from("<If", data, at + 8 * i)
+        demand(kept <= cells and (0 < step < math.inf if kept else step == 0), "corrupt", at, "a field's count or step")
+        fields.append(Field(rows, columns, kept, step, low))
+    stream = data[at + 8 * count:]
+    demand(sum(f.count for f in fields) <= 8 * len(stream), "corrupt", at, "too many coefficients")
+    coder, gaps, magnitudes = RangeDecoder(stream), [Gamma() for _ in range(8)], [Gamma() for _ in range(8)]
+    for field in fields:
+        following = gap = magnitude = 0
+        for _ in range(field.count):
+            gap = gaps[min(size_class(gap), 7)].decode(coder)
+            magnitude = magnitudes[min(size_class(magnitude), 7)].decode(coder)
+            negative = coder.even(1)
+            demand(following + gap < cells and magnitude < 32767, "corrupt", 0, "a coefficient")
+            field.coefficients[following + gap] = (magnitude + 1) * field.step * (-1 if negative else 1)
+            following += gap + 1
+    demand(coder.at == len(stream), "corrupt", 0, "the stream's length")
+    return fields
+
+
+PAPER_KINDS = {(1, 0, 1), (2, 1, 1), (3, 1, 1), (4, 1, 1)}
+
+
+def decode_paper(record, layers):
+    h, d, p = record.dims
+    found = record.load(layers, PAPER_KINDS)
+    demand(1 in found and len(found[1]) == 8 + 4 * (h + d + p), "corrupt", record.base, "marginals")
+    scale, *marginals = struct.unpack(f"<d{h + d + p}f", found[1])
+    demand(all(0 <= x < math.inf for x in [scale] + marginals), "corrupt", record.base, "marginals")
+    f_h, f_d, f_phi = marginals[:h], marginals[h:h + d], marginals[h + d:]
+    hd = read_fields(found[2], 0, 1, h, d, HAAR)[0] if 2 in found else Field(h, d, 0, 0, HAAR)
+    hphi = read_fields(found[3], 0, 1, h, p, HAAR)[0] if 3 in found else Field(h, p, 0, 0, HAAR)
+    slices = [Field(d, p, 0, 0, DAUBECHIES)]
+    if 4 in found:
+        demand(len(found[4]) >= 4, "corrupt", record.base, "slices")
+        count = struct.unpack_from("<I", found[4])[0]
+        demand(1 <= count <= h, "corrupt", record.base, "slices")
+        slices = read_fields(found[4], 4, count, d, p, DAUBECHIES)
+    c_hd, c_hphi, rgb = hd.expand(), hphi.expand(), [[], [], []]
+    c_slices = [s.expand() for s in slices]
+    for i in range(h):
+        conditional = c_slices[min(i, len(slices) - 1)]
+        for j in range(d):
+            row = f_h[i] * f_d[j] * c_hd[i][j]
+            for k in range(p):
+                b = row * f_phi[k] * c_hphi[i][k] * conditional[j][k]
+                for c, (diffuse, specular, *_) in enumerate(record.colour):
+                    rgb[c].append(max(0.0, diffuse + specular * scale * b))
+    return rgb
+
+
+DECODERS = {1: decode_paper}
+
+
+# ---- commands ----
+
+def command_list(archive):
+    for entry in archive.walk():
+        record = archive.record(entry)
+        print(f"{record.name}  {record.bytes} bytes  profile {record.profile}  {'x'.join(map(str, record.dims))}  "
+              f"{len(record.layers)} layers  log RMSE {record.layers[-1][2]:.6g}  {len(record.sections)} sections")
+
+
+def command_verify(archive):
+    for entry in archive.walk():
+        record = archive.record(entry)
+        for section in record.sections:
+            record.section(section)
+        for layers in range(1, len(record.layers) + 1):
+            for channel in record.decode(layers):
+                demand(all(0 <= x < math.inf for x in channel), "corrupt", record.base, "a value is negative or not finite")
+    print("ok")
+
+
+def command_decode(archive, name, layers):
+    record = archive.record(archive.find(name))
+    json.dump({"dims": record.dims, "rgb": record.decode(layers)}, sys.stdout)
+    print()
+
+
+def command_compare(archive, path):
+    """Every line of a .values file against what this reader decodes: to 1e-5 (8, "Accuracy")."""
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    for at in range(0, len(lines) - 1, 4):
+        name, layers, *dims = lines[at].rsplit(" ", 4)
+        record = archive.record(archive.find(name))
+        demand(list(map(int, dims)) == list(record.dims), "corrupt", 0, f"{name}: extents differ")
+        for c, decoded in enumerate(record.decode(int(layers))):
+            expected = list(map(float, lines[at + 1 + c].split()))
+            top = max(expected)
+            demand(len(expected) == len(decoded), "corrupt", 0, f"{name}: number of values")
+            for i, (a, b) in enumerate(zip(decoded, expected)):
+                demand(abs(a - b) <= max(1e-5 * abs(b), 1e-6 * top), "corrupt", 0, f"{name}, layer {layers}, cell {i}: {a} and {b}")
+
+
+def main(arguments):
+    layers = 0
+    if "--layers" in arguments:
+        at = arguments.index("--layers")
+        layers = int(arguments[at + 1])
+        del arguments[at:at + 2]
+    commands = {"list": (command_list, 0), "verify": (command_verify, 0), "decode": (command_decode, 1), "compare": (command_compare, 1)}
+    if not arguments or arguments[0] not in commands or len(arguments) != 2 + commands[arguments[0]][1]:
+        print(__doc__, file=sys.stderr)
+        return 2
+    function = commands[arguments[0]][0]
+    try:
+        archive = Archive(arguments[1])
+        function(archive, *arguments[2:], *([layers] if function is command_decode else []))
+    except (Fault, OSError) as fault:
+        print(f"read_bpk: {arguments[1]}: {fault}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,53 @@
+#!/bin/sh
+# python_reader.sh BUILD: compares the independent reader (scripts/read_bpk.py) with the library.
+#
+# Every archive of format-spec/vectors must be judged alike, and every decoded value agree to 1e-5; then the
+# same for records that were fitted in this very build (BUILD/tests/test_record_pack makes them).
+set -eu
+build=${1:?usage: tests/python_reader.sh BUILD}
+cd "$(dirname "$0")/.."
+reader=scripts/read_bpk.py
+vectors=format-spec/vectors
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+count=0
+bad=0
+
+fail() {
+	echo "python_reader: $1" >&2
+	bad=$((bad + 1))
+}
+
+# The README's table says what each archive is.
+grep '^| [a-z-]*\.bpk' "$vectors/README.md" | sed 's/^| //; s/ | /|/g' >"$folder/table"
+while IFS='|' read -r file verdict rest; do
+	count=$((count + 1))
+	case $verdict in
+	ok) word=ok ;;
+	"not an archive") word="not ours" ;;
+	"unsupported version") word=unsupported ;;
+	"checksum differs") word=checksum ;;
+	corrupt) word=corrupt ;;
+	*) fail "$file: unknown verdict $verdict"; continue ;;
+	esac
+	said=$(python3 "$reader" verify "$vectors/$file" 2>&1 || true)
+	case $said in
+	ok | "read_bpk: $vectors/$file: $word at "*) [ "$word" != ok ] && [ "$said" = ok ] && fail "$file: accepted" ;;
+	*) fail "$file: expected $word, it said: $said" ;;
+	esac
+done <"$folder/table"
+
+for values in "$vectors"/*.values; do
+	count=$((count + 1))
+	python3 "$reader" compare "${values%.values}.bpk" "$values" || fail "$values"
+done
+
+"$build/tests/test_record_pack" --write "$folder"
+for values in "$folder"/*.values; do
+	count=$((count + 1))
+	python3 "$reader" verify "${values%.values}.bpk" >"$folder/said" || fail "$values"
+	python3 "$reader" compare "${values%.values}.bpk" "$values" || fail "$values"
+done
+
+echo "python_reader: $count comparisons, $bad failed"
+[ "$bad" = 0 ]

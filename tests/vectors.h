@@ -1,0 +1,159 @@
+/*
+ * vectors.h: the small archives of format-spec/vectors, made by hand from the writing functions, byte by
+ * byte the same on every machine. tests/test_vectors.c writes them and compares them.
+ */
+#ifndef TESTS_VECTORS_H
+#define TESTS_VECTORS_H
+
+#include "archive_fixture.h"
+
+#include "archive/index.h"
+#include "codec/profile_codec.h"
+#include "model/paper.h"
+
+/* What a reader makes of it: loads (every layer of every material) and verifies. */
+struct vector {
+	const char *name;
+	bp_status verified; /* by a deep verification */
+	const char *sentence;
+	void (*make)(const char *path);
+};
+
+/* A little generator with fixed parameters (Numerical Recipes' ranqd1), so that contents are arbitrary but known. */
+static uint32_t vector_state;
+FIXTURE uint32_t vector_random(uint32_t n)
+{
+	vector_state = vector_state * 1664525u + 1013904223u;
+	return (uint32_t)((uint64_t)vector_state * n >> 32);
+}
+
+FIXTURE void vector_field(struct sparse_field *field, uint32_t rows, uint32_t columns, uint32_t count, float step)
+{
+	uint32_t next = 0, room = rows * columns;
+	*field = (struct sparse_field){ .rows = rows, .columns = columns, .count = count, .step = count ? step : 0 };
+	if (!count)
+		return;
+	field->index = malloc(count * sizeof *field->index);
+	field->level = malloc(count * sizeof *field->level);
+	for (uint32_t i = 0; i < count; i++) {
+		next += i ? 1 + vector_random((room - next) / (count - i) * 2 / 3 + 1) : 0;
+		field->index[i] = next;
+		field->level[i] = (int16_t)((int)vector_random(101) - 50);
+		if (field->level[i] == 0)
+			field->level[i] = 1;
+	}
+	field->level[0] = (int16_t)(600 + vector_random(100)); /* the coarse cells hold the mean */
+}
+
+struct vector_shape {
+	struct lattice_dims dims;
+	uint32_t hd, hphi, slices, per_slice; /* coefficients of the pairs; slices and their coefficients */
+	double scale;
+};
+
+/* A model of the paper's profile; free with vector_model_free. */
+FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
+{
+	struct model *model = calloc(1, sizeof *model);
+	struct paper_model *paper = calloc(1, sizeof *paper);
+	uint32_t extents[3] = { shape.dims.theta_h, shape.dims.theta_d, shape.dims.phi_d };
+	vector_state = seed;
+	model->profile = PROFILE_PAPER;
+	model->dims = shape.dims;
+	model->horizon_limit = -0.0625;
+	model->paper = paper;
+	paper->scale = shape.scale;
+	for (int c = 0; c < 3; c++)
+		model->colour[c] = (struct colour_fit){ shape.scale * (0.125 - 0.0625 * c), 1.25 - 0.25 * c, 9u + (uint32_t)c, c != 1, 0.03125 * c };
+	for (int axis = 0; axis < 3; axis++) {
+		paper->marginal[axis] = malloc(extents[axis] * sizeof(float));
+		for (uint32_t i = 0; i < extents[axis]; i++)
+			paper->marginal[axis][i] = (float)(256 + vector_random(512)) / 512.0f;
+	}
+	vector_field(&paper->hd, extents[0], extents[1], shape.hd, 1.0f / 128);
+	vector_field(&paper->hphi, extents[0], extents[2], shape.hphi, 1.0f / 128);
+	paper->slice_count = shape.slices;
+	paper->slice = calloc(shape.slices, sizeof *paper->slice);
+	for (uint32_t i = 0; i < shape.slices; i++)
+		vector_field(&paper->slice[i], extents[1], extents[2], i % 3 == 2 ? 0 : shape.per_slice, 1.0f / 128);
+	return model;
+}
+
+FIXTURE void vector_model_free(struct model *model)
+{
+	struct paper_model *paper = model->paper;
+	for (int axis = 0; axis < 3; axis++)
+		free(paper->marginal[axis]);
+	free(paper->hd.index);
+	free(paper->hd.level);
+	free(paper->hphi.index);
+	free(paper->hphi.level);
+	for (uint32_t i = 0; i < paper->slice_count; i++) {
+		free(paper->slice[i].index);
+		free(paper->slice[i].level);
+	}
+	free(paper->slice);
+	free(paper);
+	free(model);
+}
+
+/* The model as sections, and a head that fits them; the caller may change either before record_write. */
+FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct record_head *head, struct section_list *sections)
+{
+	struct encode_request request = { .name_bytes = strlen(name), .record_bytes_max = 60400 };
+	struct model *model = vector_model(shape, (uint32_t)strlen(name) * 7 + (unsigned char)name[0]);
+	fixture_head(head, name);
+	head->dims = model->dims;
+	memcpy(head->colour, model->colour, sizeof head->colour);
+	memset(sections, 0, sizeof *sections);
+	assert_int_equal(PAPER_CODEC.encode(model, &request, sections, &head->layer_count, &head->left_out, NULL), BP_OK);
+	for (uint32_t l = 0; l < head->layer_count; l++)
+		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) }; /* invented: there is no source */
+	vector_model_free(model);
+}
+
+FIXTURE uint8_t *vector_record(const char *name, struct vector_shape shape, size_t *bytes)
+{
+	struct record_head head;
+	struct section_list sections;
+	uint8_t *record = NULL;
+	vector_encode(name, shape, &head, &sections);
+	assert_int_equal(record_write(&head, &sections, &record, bytes, NULL), BP_OK);
+	section_list_free(&sections);
+	return record;
+}
+
+static const struct vector_shape SHAPE_MARGINALS = { { 4, 4, 4 }, 0, 0, 1, 0, 0.5 };
+static const struct vector_shape SHAPE_PAIRS = { { 4, 5, 6 }, 6, 7, 1, 0, 0.25 };
+static const struct vector_shape SHAPE_FULL = { { 6, 5, 8 }, 8, 9, 4, 5, 2.0 };
+
+/* An archive of records given as bytes; frees them. */
+FIXTURE void vector_archive(const char *path, uint8_t *const *records, const size_t *bytes, size_t count)
+{
+	struct archive_writer *writer = NULL;
+	assert_int_equal(archive_writer_open(path, &writer, NULL), BP_OK);
+	for (size_t i = 0; i < count; i++) {
+		assert_int_equal(archive_writer_add(writer, records[i], bytes[i], NULL), BP_OK);
+		free(records[i]);
+	}
+	assert_int_equal(archive_writer_commit(writer, NULL), BP_OK);
+}
+
+FIXTURE void vector_three(const char *path)
+{
+	size_t bytes[3];
+	uint8_t *records[3];
+	records[0] = vector_record("blue", SHAPE_FULL, &bytes[0]);
+	records[1] = vector_record("green", SHAPE_PAIRS, &bytes[1]);
+	records[2] = vector_record("red", SHAPE_MARGINALS, &bytes[2]);
+	vector_archive(path, records, bytes, 3);
+}
+
+FIXTURE void vector_one(const char *path, struct vector_shape shape)
+{
+	size_t bytes;
+	uint8_t *record = vector_record("material", shape, &bytes);
+	vector_archive(path, &record, &bytes, 1);
+}
+
+#endif
