@@ -149,7 +149,7 @@ static bp_status panel_draw(struct canvas *canvas, const struct figure *figure, 
 		}
 	canvas_picture(canvas, x, y, PANEL, PANEL, &picture);
 	frame_draw(canvas, x, y, PANEL, PANEL);
-	snprintf(text, sizeof text, "theta_h = %.1f deg", cell_degrees(figure->dims, cell));
+	snprintf(text, sizeof text, "theta_h %.1f deg", cell_degrees(figure->dims, cell));
 	canvas_text(canvas, x + PANEL / 2.0, y - 28, LARGE, ANCHOR_MIDDLE, false, BLACK, text);
 	snprintf(text, sizeof text, "rms of log2 c: %.3f", spread);
 	canvas_text(canvas, x + PANEL / 2.0, y - 10, SMALL, ANCHOR_MIDDLE, false, DIM, text);

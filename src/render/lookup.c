@@ -130,9 +130,20 @@ struct angle_tables *angle_tables_make(void)
 	return angles;
 }
 
+/* fmin and fmax are calls, for the sake of NaN; there is none here. */
+static double lesser(double a, double b)
+{
+	return a < b ? a : b;
+}
+
+static double greater(double a, double b)
+{
+	return a > b ? a : b;
+}
+
 static double table_at(const double *table, double x)
 {
-	double at = fmin(x, 1) * ANGLE_STEPS;
+	double at = lesser(x, 1) * ANGLE_STEPS;
 	int i = (int)at;
 	return table[i] + (at - i) * (table[i + 1] - table[i]);
 }
@@ -140,10 +151,10 @@ static double table_at(const double *table, double x)
 /* atan2(y, x)/pi folded to [0, 1): phi_d and phi_d + pi are the same direction pair. */
 static double fold_phi(const struct angle_tables *angles, double y, double x)
 {
-	double ay = fabs(y), ax = fabs(x), large = fmax(ax, ay);
+	double ay = fabs(y), ax = fabs(x), large = greater(ax, ay);
 	if (large <= 0)
 		return 0;
-	double turn = table_at(angles->atan, fmin(ax, ay) / large);
+	double turn = table_at(angles->atan, lesser(ax, ay) / large);
 	if (ay > ax)
 		turn = 0.5 - turn;
 	return (y < 0) != (x < 0) && turn > 0 ? 1 - turn : turn;
@@ -153,7 +164,7 @@ static double fold_phi(const struct angle_tables *angles, double y, double x)
 static uint32_t split_clamped(double at, uint32_t extent, uint16_t *fraction)
 {
 	uint32_t cell = at < extent ? (uint32_t)at : extent - 1;
-	*fraction = (uint16_t)(fmin(1, at - cell) * 65535 + 0.5);
+	*fraction = (uint16_t)(lesser(1, at - cell) * 65535 + 0.5);
 	return cell;
 }
 
@@ -161,7 +172,7 @@ struct place place_make(const struct angle_tables *angles, struct lattice_dims d
                         double y, double x, double gain)
 {
 	/* sin(theta/2) keeps its precision near 0, where the cosine has none */
-	double half_h = sqrt(fmax(0, 1 - cos_theta_h) * 0.5), half_d = sqrt(fmax(0, 1 - cos_theta_d) * 0.5);
+	double half_h = sqrt(greater(0, 1 - cos_theta_h) * 0.5), half_d = sqrt(greater(0, 1 - cos_theta_d) * 0.5);
 	double at_h = table_at(angles->root_theta, sqrt(half_h * M_SQRT2)) * dims.theta_h;
 	double at_d = table_at(angles->theta, half_d * M_SQRT2) * dims.theta_d;
 	double at_phi = fold_phi(angles, y, x) * dims.phi_d;

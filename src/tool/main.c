@@ -21,7 +21,10 @@
 	X(list)     \
 	X(extract)  \
 	X(verify)   \
-	X(synth)
+	X(synth)    \
+	X(render)   \
+	X(compare)  \
+	X(show)
 
 #define DECLARE(name) extern const struct command command_##name;
 COMMANDS(DECLARE)

@@ -121,3 +121,9 @@ bool option_number(const struct command *command, const char *option, const char
 	*out = value;
 	return true;
 }
+
+bool text_ends_with(const char *text, const char *end)
+{
+	size_t text_bytes = strlen(text), end_bytes = strlen(end);
+	return text_bytes > end_bytes && !strcmp(text + text_bytes - end_bytes, end);
+}

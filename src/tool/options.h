@@ -41,4 +41,7 @@ bool option_bytes(const struct command *command, const char *option, const char 
 bool option_number(const struct command *command, const char *option, const char *text, double least, double most,
                    double *out);
 
+/* Whether a path has this ending, and something before it. */
+bool text_ends_with(const char *text, const char *end);
+
 #endif

@@ -1,0 +1,14 @@
+# What cannot be shown or written: a message that says why, and no file.
+fixture alpha beta
+build -q -o out.bpk .
+code brdfpack show -o a.pdf out.bpk alpha
+code brdfpack show out.bpk alpha
+code brdfpack show -o a.svg out.bpk
+code brdfpack show --theta-h 5,91 -o a.svg out.bpk alpha
+code brdfpack show --theta-h '' -o a.svg out.bpk alpha
+code brdfpack show --profile best -o a.svg out.bpk alpha
+code brdfpack show --measured nowhere -o a.svg out.bpk alpha
+code brdfpack show -o missing/a.svg out.bpk alpha
+code brdfpack show -o a.svg out.bpk gamma
+code brdfpack show -o a.svg "$FIXTURES/unmeasured.binary"
+ls

@@ -1,0 +1,15 @@
+# The pictures of the model, from an archive alone, with the measured file, and from a measured file.
+fixture alpha
+build -q -o out.bpk .
+brdfpack show -o a.svg out.bpk alpha
+grep -c '<image' a.svg
+grep -o 'before coding[^<]*' a.svg
+brdfpack show --measured . -o b.svg out.bpk alpha
+grep -c '<image' b.svg
+grep -o 'before coding[^<]*' b.svg
+brdfpack show --theta-h 0,45.5,90 -o c.svg alpha.binary
+grep -c '<image' c.svg
+grep -o 'theta_h [0-9][^<]*' c.svg | sort -u
+brdfpack show -o d.png alpha.binary "another name"
+head -c 4 d.png | tail -c 3
+echo
