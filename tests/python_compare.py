@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""Compares what read_bpk.py decodes with what brdfpack extracted: python_compare.py READER ARCHIVE FOLDER.
+
+Where the extracted file holds a value (it holds -1 below the horizon), both must agree to 1e-5 relative,
+or to 1e-9 of the material's largest value: the C library decodes in float.
+"""
+import json
+import os
+import struct
+import subprocess
+import sys
+
+SCALE = (1 / 1500, 1.15 / 1500, 1.66 / 1500)
+reader, archive, folder = sys.argv[1:]
+worst = 0.0
+compared = 0
+for file in sorted(os.listdir(folder)):
+    name = file[: -len(".binary")]
+    data = open(os.path.join(folder, file), "rb").read()
+    dims = struct.unpack("<3i", data[:12])
+    values = struct.unpack("<%dd" % ((len(data) - 12) // 8), data[12:])
+    cells = dims[0] * dims[1] * dims[2]
+    decoded = json.loads(subprocess.run([sys.executable, reader, "decode", archive, name], check=True, capture_output=True).stdout)
+    if tuple(decoded["dims"]) != dims:
+        sys.exit("%s: dims %s, extracted %s" % (name, decoded["dims"], dims))
+    for c in range(3):
+        ours = [v * SCALE[c] for v in values[c * cells : (c + 1) * cells]]
+        theirs = decoded["rgb"][c]
+        floor = 1e-9 * max(max(ours), 1e-300)
+        for a, b in zip(ours, theirs):
+            if a < 0:
+                continue
+            compared += 1
+            error = 0.0 if abs(a - b) <= floor else abs(a - b) / max(abs(a), abs(b))
+            worst = max(worst, error)
+            if error > 1e-5:
+                sys.exit("%s: channel %d: the library has %r, the Python reader %r" % (name, c, a, b))
+print("%s: %d values compared, largest relative difference %.2g" % (archive, compared, worst))
+if compared == 0:
+    sys.exit("nothing was compared")
