@@ -169,6 +169,107 @@ typedef int bp_problem_fn(void *user, const bp_problem *problem);
  */
 bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error);
 
+/* ---- Materials ---- */
+
+/*
+ * A loaded material: immutable, and independent of the archive, which may be closed. Any number of threads
+ * may use it at once.
+ *
+ * Directions are unit vectors in the local frame of the surface, z along the normal, pointing away from the
+ * surface: wi towards the light, wo towards the eye. Other lengths are normalised first (those from about
+ * 1e-18 to 1e18). A direction that is below or on the horizon (z <= 0), zero, infinite or NaN is *unusable*:
+ * functions say what it gives, never a NaN.
+ *
+ * Values are the BRDF f in 1/sr, linear, in the measured R, G and B; the caller multiplies by cos theta_i.
+ * They are finite, not negative, and the same when wi and wo change places.
+ *
+ * Convention of the table. Cell (i, j, k) starts at theta_h = (i/H)^2 pi/2, theta_d = (j/D) pi/2,
+ * phi_d = (k/P) pi (Rusinkiewicz 1998), and a stored value belongs to that LOWER CORNER of its cell.
+ * Interpolation is trilinear on the corners, periodic in phi_d (period pi: reciprocity); beyond the last
+ * corner of theta_h and theta_d its value stays. Cells that nothing was measured in hold the model's smooth
+ * continuation, so near the horizon no "not measured" mark enters. Where wi = wo, phi_d is 0; where theta_h
+ * is 0, phi_h is.
+ */
+typedef struct bp_material bp_material;
+
+/* How a material lies in memory; bytes for a MERL lattice, in RGB / as mean. */
+typedef enum bp_form {
+	BP_FORM_EXPANDED = 0, /* 16 bits per value, relative error at most 2^-11 of the decoded value; 8.8 MB / 2.9 MB */
+	BP_FORM_COMPACT = 1   /* 8 bits per value and shared scales, an error of about 0.1 % more; 2.6 MB / 2.0 MB */
+} bp_form;
+
+typedef enum bp_colour {
+	BP_COLOUR_RGB = 0,
+	BP_COLOUR_MEAN = 1 /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
+} bp_colour;
+
+/* What to load. Zeroed but for struct_bytes it asks for the whole record, in RGB, expanded, without sampling. */
+typedef struct bp_load_options {
+	size_t struct_bytes;  /* sizeof(bp_load_options) */
+	double max_log_rmse;  /* > 0: the fewest layers whose log_rmse is at most this, all when none is; 0: all */
+	bp_form form;
+	bp_colour colour;
+	int sampling;         /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */
+} bp_load_options;
+
+/* What was loaded. */
+typedef struct bp_loaded {
+	size_t struct_bytes; /* sizeof(bp_loaded), set by the caller */
+	uint32_t layers;     /* of the record's layers */
+	double log_rmse;     /* their recorded error */
+	uint32_t read_bytes; /* of the record: its head and the sections needed */
+	size_t memory_bytes; /* all that the material occupies */
+	bp_form form;
+	bp_colour colour;
+	int sampling;
+} bp_loaded;
+
+/*
+ * Loads material `index` of the archive; options NULL: as if zeroed. The caller frees *out. Several threads
+ * may load from one archive at once. Beside the result it needs 12 bytes per cell while it works.
+ * Errors: BP_ERROR_ARGUMENT (struct_bytes, an unknown form or colour, sampling neither 0 nor 1, max_log_rmse negative
+ * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
+ */
+bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out,
+                           bp_error *error);
+void bp_material_free(bp_material *material); /* NULL is allowed */
+
+/* Fills *loaded; BP_ERROR_ARGUMENT when struct_bytes is not that of a version of this header. */
+bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_error *error);
+
+/* f(wi, wo), interpolated. An unusable direction gives 0. */
+void bp_material_evaluate(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
+
+/* f of the cell into which the directions fall, as the MERL database's own look-up gives it. */
+void bp_material_nearest(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
+
+/*
+ * bp_material_evaluate for `count` pairs in separate arrays of components: wi[0] holds the x of every wi, and so on.
+ * The same values to the bit, several times faster from some dozens on. Outputs must not overlap anything else.
+ */
+void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
+                                float *const rgb[3]);
+
+/*
+ * Draws wi for wo, nearly in proportion to f cos theta_i, from three independent uniform numbers in [0, 1).
+ * Returns its density per solid angle, exactly what bp_material_pdf returns for the pair; wi has unit length and
+ * z > 0, and the weight f cos theta_i / pdf is finite. Numbers outside [0, 1) are clamped, NaN counts as 0.
+ * An unusable wo, or a material that was loaded without sampling, gives density 0 and wi = 0.
+ */
+float bp_material_sample(const bp_material *material, const float wo[3], const float u[3], float wi[3]);
+
+/*
+ * The density of bp_material_sample. Over the hemisphere of wi it integrates to 1 and is above 0 everywhere. An unusable
+ * direction, or a material that was loaded without sampling, gives 0.
+ */
+float bp_material_pdf(const bp_material *material, const float wi[3], const float wo[3]);
+
+/*
+ * The directional albedo: the integral of f cos theta_i over wi, for theta_o in radians in [0, pi/2]. Other angles, NaN, and
+ * a material that was loaded without sampling give 0. Measurements can exceed 1.
+ */
+void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3]);
+
 #ifdef __GNUC__
 #pragma GCC visibility pop
 #endif

@@ -1,0 +1,177 @@
+/* Loading a material to render from: record -> model -> expansion -> table, and the sampler beside it. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "../error.h"
+#include "../model/evaluate.h"
+#include "../model/sample.h"
+#include "reader.h"
+
+struct bp_material {
+	struct table *table;
+	struct sampler *sampler; /* NULL: loaded without */
+	bp_loaded loaded;
+};
+
+_Static_assert((int)BP_FORM_EXPANDED == (int)TABLE_EXPANDED && (int)BP_FORM_COMPACT == (int)TABLE_COMPACT, "forms");
+
+static bp_status options_check(const bp_load_options *options, bp_error *error)
+{
+	if (options->struct_bytes != sizeof *options)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_load_options) = %zu",
+		                 options->struct_bytes, sizeof *options);
+	if (!(options->max_log_rmse >= 0))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
+	if (options->form != BP_FORM_EXPANDED && options->form != BP_FORM_COMPACT)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no memory form %d", (int)options->form);
+	if (options->colour != BP_COLOUR_RGB && options->colour != BP_COLOUR_MEAN)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no colour option %d", (int)options->colour);
+	if (options->sampling != 0 && options->sampling != 1)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "sampling is %d, it must be 0 or 1", options->sampling);
+	return BP_OK;
+}
+
+/* The fewest layers whose error is at most this; all where none satisfies it or 0 is asked for. */
+static uint32_t layers_for(const struct record_head *head, double max_log_rmse)
+{
+	for (uint32_t n = 0; max_log_rmse > 0 && n < head->layer_count; n++)
+		if (head->layers[n].fidelity.log_rmse <= max_log_rmse)
+			return n + 1;
+	return head->layer_count;
+}
+
+/* An achromatic load does without the sections that only colour needs. */
+static void colour_sections_drop(struct record_head *head)
+{
+	uint32_t kept = 0;
+	for (uint32_t n = 0; n < head->section_count; n++)
+		if (!(head->sections[n].flags & SECTION_COLOUR))
+			head->sections[kept++] = head->sections[n];
+	head->section_count = kept;
+}
+
+static uint32_t bytes_to_read(const struct record_head *head, uint32_t layers)
+{
+	uint32_t bytes = head->head_bytes;
+	for (uint32_t n = 0; n < head->section_count; n++)
+		if (head->sections[n].layer < layers)
+			bytes += head->sections[n].bytes;
+	return bytes;
+}
+
+static bp_status material_build(const struct model *model, const bp_load_options *options, bp_material *material, bp_error *error)
+{
+	struct expansion expansion;
+	bp_status status = expansion_alloc(model->dims, &expansion, error);
+	if (status)
+		return status;
+	status = model_expand(model, 0, &expansion, error);
+	if (!status)
+		status = table_build(&expansion, (enum table_form)options->form, options->colour == BP_COLOUR_RGB ? 3 : 1, &material->table, error);
+	expansion_free(&expansion);
+	if (!status && options->sampling)
+		status = sampler_build(material->table, &material->sampler, error);
+	return status;
+}
+
+bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out, bp_error *error)
+{
+	const bp_load_options whole = {.struct_bytes = sizeof whole};
+	struct index_page leaf;
+	struct index_entry entry;
+	struct record_head head;
+	struct model *model = NULL;
+	bp_status status;
+
+	options = options ? options : &whole;
+	status = options_check(options, error);
+	if (status)
+		return status;
+	leaf.count = 0;
+	status = archive_entry(archive, index, &leaf, &entry, error);
+	if (!status)
+		status = archive_entry_head(archive, &entry, &head, error);
+	if (status)
+		return status;
+
+	bp_material *material = calloc(1, sizeof *material);
+	if (!material)
+		return error_memory(error, sizeof *material);
+	const uint32_t layers = layers_for(&head, options->max_log_rmse);
+	if (options->colour == BP_COLOUR_MEAN)
+		colour_sections_drop(&head);
+	status = archive_entry_load(archive, &entry, &head, layers, &model, error);
+	if (!status)
+		status = material_build(model, options, material, error);
+	model_free(model);
+	if (status) {
+		bp_material_free(material);
+		return status;
+	}
+	material->loaded = (bp_loaded){
+		.struct_bytes = sizeof material->loaded,
+		.layers = layers,
+		.log_rmse = head.layers[layers - 1].fidelity.log_rmse,
+		.read_bytes = bytes_to_read(&head, layers),
+		.memory_bytes = sizeof *material + table_bytes(material->table) + (material->sampler ? sampler_bytes(material->sampler) : 0),
+		.form = options->form,
+		.colour = options->colour,
+		.sampling = options->sampling,
+	};
+	*out = material;
+	return BP_OK;
+}
+
+void bp_material_free(bp_material *material)
+{
+	if (!material)
+		return;
+	table_free(material->table);
+	sampler_free(material->sampler);
+	free(material);
+}
+
+bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_error *error)
+{
+	if (loaded->struct_bytes != sizeof *loaded)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_loaded) = %zu", loaded->struct_bytes,
+		                 sizeof *loaded);
+	*loaded = material->loaded;
+	return BP_OK;
+}
+
+void bp_material_evaluate(const bp_material *material, const float wi[3], const float wo[3], float rgb[3])
+{
+	table_evaluate(material->table, wi, wo, rgb);
+}
+
+void bp_material_nearest(const bp_material *material, const float wi[3], const float wo[3], float rgb[3])
+{
+	table_nearest(material->table, wi, wo, rgb);
+}
+
+void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3])
+{
+	table_evaluate_batch(material->table, count, wi, wo, rgb);
+}
+
+float bp_material_sample(const bp_material *material, const float wo[3], const float u[3], float wi[3])
+{
+	if (material->sampler)
+		return sampler_draw(material->sampler, wo, u, wi);
+	wi[0] = wi[1] = wi[2] = 0;
+	return 0;
+}
+
+float bp_material_pdf(const bp_material *material, const float wi[3], const float wo[3])
+{
+	return material->sampler ? sampler_pdf(material->sampler, wi, wo) : 0;
+}
+
+void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3])
+{
+	if (material->sampler)
+		sampler_albedo(material->sampler, theta_o, rgb);
+	else
+		rgb[0] = rgb[1] = rgb[2] = 0;
+}
