@@ -12,7 +12,7 @@
 #include "../merl/merl_file.h"
 #include "baseline.h"
 
-enum { ZLIB_LEVEL = 6, ZSTD_LEVEL = 9, XZ_LEVEL = 1 };
+enum { ZLIB_LEVEL = 6, ZSTD_LEVEL = 9, XZ_LEVEL = 0 };
 enum { HEADER_BYTES = 12 };
 
 struct codec {
@@ -194,4 +194,4 @@ out:
 
 const struct baseline BASELINE_ZLIB = LOSSLESS("zlib", "zlib " ZLIB_VERSION ", level 6, lossless", zlib_fit);
 const struct baseline BASELINE_ZSTD = LOSSLESS("zstd", "zstd " ZSTD_VERSION_STRING ", level 9, lossless", zstd_fit);
-const struct baseline BASELINE_XZ = LOSSLESS("xz", "xz " LZMA_VERSION_STRING ", preset 1, lossless", xz_fit);
+const struct baseline BASELINE_XZ = LOSSLESS("xz", "xz " LZMA_VERSION_STRING ", preset 0, lossless", xz_fit);

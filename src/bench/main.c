@@ -21,6 +21,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "../error.h"
 #include "../merl/merl_file.h"
 #include "row.h"
 #include "timing.h"
@@ -42,6 +43,7 @@ static const double BUDGETS[] = {4000, 8000, 16000, 30000, 60400, 120000};
 struct run {
 	char *paths[MATERIALS_MAX];
 	int material_count;
+	const char *truth; /* folder of the tables that the figures are taken against; NULL: the inputs themselves */
 	bool method_on[METHOD_ROWS];
 	double budgets[BUDGETS_MAX];
 	int budget_count;
@@ -161,7 +163,7 @@ static bool same_dims(struct lattice_dims a, struct lattice_dims b)
 static void run_material(struct run *run, int at)
 {
 	char name[256];
-	struct lattice lattice = {0};
+	struct lattice lattice = {0}, truth = {0};
 	struct expansion table = {0};
 	struct figure_reference reference = {0};
 	uint8_t *raw = NULL;
@@ -175,6 +177,19 @@ static void run_material(struct run *run, int at)
 		complain(run, name, "reading", &error);
 		goto out;
 	}
+	if (run->truth) {
+		char path[4096];
+		snprintf(path, sizeof path, "%s/%s.binary", run->truth, name);
+		if (lattice_read_path(path, NULL, NULL, true, &truth, &error)) {
+			complain(run, name, "reading the truth", &error);
+			goto out;
+		}
+		if (!same_dims(truth.dims, lattice.dims)) {
+			error_set(&error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s has other extents than the input", path);
+			complain(run, name, "reading the truth", &error);
+			goto out;
+		}
+	}
 	if (!same_dims(run->dims, lattice.dims)) {
 		figure_plans_free(&run->plans);
 		run->plans = (struct figure_plans){{NULL}};
@@ -185,7 +200,7 @@ static void run_material(struct run *run, int at)
 			goto out;
 		}
 	}
-	if (figure_reference_make(&run->plans, &lattice, &reference, &error) || expansion_alloc(lattice.dims, &table, &error)) {
+	if (figure_reference_make(&run->plans, run->truth ? &truth : &lattice, &reference, &error) || expansion_alloc(lattice.dims, &table, &error)) {
 		complain(run, name, "rendering the reference", &error);
 		goto out;
 	}
@@ -198,7 +213,7 @@ static void run_material(struct run *run, int at)
 			bp_status status = run_method(run, &material, &reference, METHODS[m], &row, &table, &error);
 			if (!status)
 				fwrite(&row, sizeof row, 1, run->rows);
-			else if (status == BP_ERROR_LIMIT || status == BP_ERROR_UNSUPPORTED) /* this budget is not for this method */
+			else if (status == BP_ERROR_LIMIT || status == BP_ERROR_UNSUPPORTED || status == BP_ERROR_ARGUMENT) /* not this budget, or not this build */
 				fprintf(stderr, "brdfpack-bench: %s: %s: no row: %s\n", name, METHODS[m]->name, error.message);
 			else
 				complain(run, name, METHODS[m]->name, &error);
@@ -208,6 +223,7 @@ out:
 	figure_reference_free(&reference);
 	expansion_free(&table);
 	lattice_free(&lattice);
+	lattice_free(&truth);
 	free(raw);
 }
 
@@ -291,6 +307,8 @@ static void print_head(FILE *out, const struct run *run, const char *label, int 
 #endif
 	fprintf(out, "# commit: %s\n", commit && *commit ? commit : "unknown");
 	fprintf(out, "# data: %s; %d materials\n", label, run->material_count);
+	if (run->truth)
+		fprintf(out, "# figures against: the tables of the same names in %s\n", run->truth);
 	fprintf(out, "# command:");
 	for (int n = 0; n < argc; n++)
 		fprintf(out, " %s", argv[n]);
@@ -435,6 +453,7 @@ static void usage(FILE *out)
 	        "  -n FILE   only the materials named there, one per line\n"
 	        "  -m LIST   only these methods, with commas: paper,default,ward,...\n"
 	        "  -b LIST   budgets in bytes, with commas (4000,8000,16000,30000,60400,120000)\n"
+	        "  -t FOLDER figures against the tables of the same names there, not against the inputs\n"
 	        "  -q        quick: three materials, spread over the list\n"
 	        "  -j N      processes (1: times are least disturbed)\n");
 }
@@ -452,13 +471,14 @@ int main(int argc, char **argv)
 		run.method_on[m] = true;
 	memcpy(run.budgets, BUDGETS, sizeof BUDGETS);
 	run.budget_count = sizeof BUDGETS / sizeof *BUDGETS;
-	while ((option = getopt(argc, argv, "o:l:n:m:b:qj:h")) != -1)
+	while ((option = getopt(argc, argv, "o:l:n:m:b:t:qj:h")) != -1)
 		switch (option) {
 		case 'o': output = optarg; break;
 		case 'l': label = optarg; break;
 		case 'n': names = optarg; break;
 		case 'm': choose_methods(&run, optarg); break;
 		case 'b': choose_budgets(&run, optarg); break;
+		case 't': run.truth = optarg; break;
 		case 'q': quick = true; break;
 		case 'j': workers = atoi(optarg); break;
 		case 'h': usage(stdout); return 0;
