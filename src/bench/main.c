@@ -9,24 +9,22 @@
  * With -j N, N processes share the materials; the rows come back through temporary files and are
  * put in order, so only the times depend on N.
  */
-#include <dirent.h>
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/utsname.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "../error.h"
 #include "../merl/merl_file.h"
+#include "head.h"
+#include "inputs.h"
 #include "row.h"
 #include "timing.h"
 
-enum { MATERIALS_MAX = ROW_MEDIAN_MAX, BUDGETS_MAX = 16, METHODS_MAX = 32, WORKERS_MAX = 64, QUICK_MATERIALS = 3, REPEATS = 3 };
+enum { BUDGETS_MAX = 16, METHODS_MAX = 32, WORKERS_MAX = 64, QUICK_MATERIALS = 3, REPEATS = 3 };
 /* Work that takes less than this is repeated and its median taken. */
 static const double SHORT_SECONDS = 0.3;
 
@@ -41,8 +39,7 @@ static const char *const YARDSTICK_NAMES[] = {"cat", "raw-table"};
 static const double BUDGETS[] = {4000, 8000, 16000, 30000, 60400, 120000};
 
 struct run {
-	char *paths[MATERIALS_MAX];
-	int material_count;
+	struct inputs inputs;
 	const char *truth; /* folder of the tables that the figures are taken against; NULL: the inputs themselves */
 	bool method_on[METHOD_ROWS];
 	double budgets[BUDGETS_MAX];
@@ -63,17 +60,6 @@ static void complain(struct run *run, const char *material, const char *what, co
 {
 	fprintf(stderr, "brdfpack-bench: %s: %s: %s\n", material, what, error->message);
 	run->failed = true;
-}
-
-/* Name of a material: the file's stem. */
-static void stem_of(const char *path, char *out, size_t capacity)
-{
-	const char *slash = strrchr(path, '/');
-
-	snprintf(out, capacity, "%s", slash ? slash + 1 : path);
-	char *dot = strrchr(out, '.');
-	if (dot && dot != out)
-		*dot = 0;
 }
 
 static struct row empty_row(int material, int method)
@@ -136,7 +122,7 @@ static void run_yardsticks(struct run *run, int at, const char *name, const stru
 
 	if (run->method_on[YARDSTICK_READ]) {
 		for (int n = 0; n < REPEATS; n++)
-			if (time_read(run->paths[at], &seconds[n], NULL, &bytes, &error)) {
+			if (time_read(run->inputs.paths[at], &seconds[n], NULL, &bytes, &error)) {
 				complain(run, name, "cat", &error);
 				return;
 			}
@@ -171,9 +157,9 @@ static void run_material(struct run *run, int at)
 	double start = clock_seconds(CLOCK_MONOTONIC), seconds;
 	bp_error error;
 
-	stem_of(run->paths[at], name, sizeof name);
-	if (time_read(run->paths[at], &seconds, &raw, &raw_bytes, &error) ||
-	    lattice_read_path(run->paths[at], NULL, NULL, true, &lattice, &error)) {
+	inputs_name(run->inputs.paths[at], name, sizeof name);
+	if (time_read(run->inputs.paths[at], &seconds, &raw, &raw_bytes, &error) ||
+	    lattice_read_path(run->inputs.paths[at], NULL, NULL, true, &lattice, &error)) {
 		complain(run, name, "reading", &error);
 		goto out;
 	}
@@ -232,7 +218,7 @@ static int run_all(struct run *run, int workers, struct row **out)
 {
 	FILE *files[WORKERS_MAX];
 	pid_t children[WORKERS_MAX];
-	int count = 0, capacity = run->material_count * METHOD_ROWS * (BUDGETS_MAX + 1);
+	int count = 0, capacity = run->inputs.count * METHOD_ROWS * (BUDGETS_MAX + 1);
 	struct row *rows = malloc((size_t)capacity * sizeof *rows);
 
 	for (int w = 0; w < workers; w++)
@@ -249,7 +235,7 @@ static int run_all(struct run *run, int workers, struct row **out)
 		if (children[w])
 			continue;
 		run->rows = files[w];
-		for (int at = w; at < run->material_count; at += workers)
+		for (int at = w; at < run->inputs.count; at += workers)
 			run_material(run, at);
 		fflush(run->rows);
 		if (workers > 1)
@@ -269,50 +255,12 @@ static int run_all(struct run *run, int workers, struct row **out)
 	return count;
 }
 
-/* The first line of a file that begins with `key`, after its colon; "unknown" where there is none. */
-static void find_line(const char *path, const char *key, char *out, size_t capacity)
+static void print_head(FILE *out, const struct run *run, const char *label, int workers)
 {
-	char line[512];
-	FILE *file = fopen(path, "r");
-
-	snprintf(out, capacity, "unknown");
-	while (file && fgets(line, sizeof line, file))
-		if (!strncmp(line, key, strlen(key)) && strchr(line, ':')) {
-			snprintf(out, capacity, "%s", strchr(line, ':') + 2);
-			out[strcspn(out, "\n")] = 0;
-			break;
-		}
-	if (file)
-		fclose(file);
-}
-
-static void print_head(FILE *out, const struct run *run, const char *label, int workers, int argc, char **argv)
-{
-	char processor[256], date[64];
-	struct utsname system;
-	time_t now = time(NULL);
-	const char *commit = getenv("BENCH_COMMIT");
-
-	find_line("/proc/cpuinfo", "model name", processor, sizeof processor);
-	uname(&system);
-	strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime(&now));
-	fprintf(out, "# brdfpack-bench, %s\n", date);
-	fprintf(out, "# machine: %s, %ld usable cores, %s %s %s\n", processor, sysconf(_SC_NPROCESSORS_ONLN), system.sysname,
-	        system.release, system.machine);
-	fprintf(out, "# compiler: %s %s\n",
-#ifdef __clang__
-	        "clang", __clang_version__);
-#else
-	        "gcc", __VERSION__);
-#endif
-	fprintf(out, "# commit: %s\n", commit && *commit ? commit : "unknown");
-	fprintf(out, "# data: %s; %d materials\n", label, run->material_count);
+	fprintf(out, "# data: %s; %d materials\n", label, run->inputs.count);
 	if (run->truth)
 		fprintf(out, "# figures against: the tables of the same names in %s\n", run->truth);
-	fprintf(out, "# command:");
-	for (int n = 0; n < argc; n++)
-		fprintf(out, " %s", argv[n]);
-	fprintf(out, "\n# processes: %d; fit, decode: processor seconds; evaluate: median of %d passes over %d random pairs; cat: wall-clock seconds\n",
+	fprintf(out, "# processes: %d; fit, decode: processor seconds; evaluate: median of %d passes over %d random pairs; cat: wall-clock seconds\n",
 	        workers, REPEATS, PAIRS);
 	fprintf(out, "# evaluated: model = straight from what is stored; table = after decoding the whole, nearest look-up (paper, default: interpolated, as a renderer reads them)\n");
 	for (int m = 0; m < YARDSTICK_READ; m++)
@@ -326,7 +274,7 @@ static void print_rows(FILE *out, const struct run *run, const struct row *rows,
 
 	row_print_header(out);
 	for (int n = 0; n < count; n++) {
-		stem_of(run->paths[rows[n].material], name, sizeof name);
+		inputs_name(run->inputs.paths[rows[n].material], name, sizeof name);
 		row_print(out, name, method_name(rows[n].method), &rows[n]);
 	}
 	for (int n = 0, next; n < count; n = next) {
@@ -335,76 +283,6 @@ static void print_rows(FILE *out, const struct run *run, const struct row *rows,
 		struct row median = row_median(rows + n, next - n);
 		row_print(out, "(median)", method_name(median.method), &median);
 	}
-}
-
-static int by_name(const void *a, const void *b)
-{
-	return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-static void add_path(struct run *run, const char *folder, const char *name)
-{
-	char path[4096];
-
-	if (run->material_count == MATERIALS_MAX) {
-		fprintf(stderr, "brdfpack-bench: more than %d materials\n", MATERIALS_MAX);
-		exit(2);
-	}
-	snprintf(path, sizeof path, "%s%s%s", folder ? folder : "", folder ? "/" : "", name);
-	run->paths[run->material_count++] = strdup(path);
-}
-
-/* A MERL file, or every *.binary of a folder. */
-static void add_input(struct run *run, const char *path)
-{
-	struct stat info;
-	DIR *folder;
-	struct dirent *entry;
-
-	if (stat(path, &info)) {
-		fprintf(stderr, "brdfpack-bench: %s: %s\n", path, strerror(errno));
-		exit(2);
-	}
-	if (!S_ISDIR(info.st_mode)) {
-		add_path(run, NULL, path);
-		return;
-	}
-	if (!(folder = opendir(path))) {
-		fprintf(stderr, "brdfpack-bench: %s: %s\n", path, strerror(errno));
-		exit(2);
-	}
-	while ((entry = readdir(folder))) {
-		size_t length = strlen(entry->d_name);
-		if (length > 7 && !strcmp(entry->d_name + length - 7, ".binary"))
-			add_path(run, path, entry->d_name);
-	}
-	closedir(folder);
-}
-
-/* Keeps the materials whose stems stand, one per line, in a file. */
-static void keep_listed(struct run *run, const char *list)
-{
-	char line[512], name[256];
-	bool keep[MATERIALS_MAX] = {false};
-	FILE *file = fopen(list, "r");
-	int kept = 0;
-
-	if (!file) {
-		fprintf(stderr, "brdfpack-bench: %s: %s\n", list, strerror(errno));
-		exit(2);
-	}
-	while (fgets(line, sizeof line, file)) {
-		line[strcspn(line, "\t\r\n")] = 0;
-		for (int n = 0; n < run->material_count; n++) {
-			stem_of(run->paths[n], name, sizeof name);
-			keep[n] |= !strcmp(name, line);
-		}
-	}
-	fclose(file);
-	for (int n = 0; n < run->material_count; n++)
-		if (keep[n])
-			run->paths[kept++] = run->paths[n];
-	run->material_count = kept;
 }
 
 static void choose_methods(struct run *run, const char *list)
@@ -485,17 +363,15 @@ int main(int argc, char **argv)
 		default: usage(stderr); return 2;
 		}
 	for (int n = optind; n < argc; n++)
-		add_input(&run, argv[n]);
-	qsort(run.paths, (size_t)run.material_count, sizeof *run.paths, by_name);
-	if (names)
-		keep_listed(&run, names);
-	if (quick && run.material_count > QUICK_MATERIALS) {
-		for (int n = 0; n < QUICK_MATERIALS; n++)
-			run.paths[n] = run.paths[n * (run.material_count - 1) / (QUICK_MATERIALS - 1)];
-		run.material_count = QUICK_MATERIALS;
-	}
-	if (!run.material_count || workers < 1 || workers > WORKERS_MAX) {
-		fprintf(stderr, run.material_count ? "brdfpack-bench: -j wants 1 to 64\n" : "brdfpack-bench: no MERL file (*.binary) found\n");
+		if (!inputs_add(&run.inputs, argv[n]))
+			return 2;
+	inputs_sort(&run.inputs);
+	if (names && !inputs_keep_listed(&run.inputs, names))
+		return 2;
+	if (quick)
+		inputs_thin(&run.inputs, QUICK_MATERIALS);
+	if (!run.inputs.count || workers < 1 || workers > WORKERS_MAX) {
+		fprintf(stderr, run.inputs.count ? "brdfpack-bench: -j wants 1 to 64\n" : "brdfpack-bench: no MERL file (*.binary) found\n");
 		usage(stderr);
 		return 2;
 	}
@@ -508,13 +384,17 @@ int main(int argc, char **argv)
 		return 1;
 	}
 	pairs_make(run.pairs);
-	count = run_all(&run, workers < run.material_count ? workers : run.material_count, &rows);
-	print_head(out, &run, label ? label : argv[optind], workers, argc, argv);
+	count = run_all(&run, workers < run.inputs.count ? workers : run.inputs.count, &rows);
+	head_print(out, argc, argv);
+	print_head(out, &run, label ? label : argv[optind], workers);
 	print_rows(out, &run, rows, count);
 	if (fflush(out) || ferror(out) || (output && fclose(out))) {
 		fprintf(stderr, "brdfpack-bench: %s: %s\n", output ? output : "standard output", strerror(errno));
 		return 1;
 	}
 	free(rows);
+	free(run.pairs);
+	figure_plans_free(&run.plans);
+	inputs_free(&run.inputs);
 	return run.failed;
 }

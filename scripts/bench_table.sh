@@ -1,0 +1,56 @@
+#!/bin/sh
+# bench_table.sh TABLE.tsv [BUDGET]: the README's table, as Markdown: one row per method at BUDGET bytes (60400) or at the
+# method's own size, the sphere's PSNR under the key lights per material, and medians. Under it the figures that the
+# paper prints for its own method and its rivals.
+set -e
+table=$1 budget=${2:-60400}
+[ -r "$table" ] || { echo "usage: bench_table.sh TABLE.tsv [BUDGET]" >&2; exit 2; }
+awk -F '\t' -v budget="$budget" '
+	/^# (machine|compiler|commit|data|figures against|command|processes):/ {sub(/^# /, ""); head = head "    " $0 "\n"}
+	/^#/ {next}
+	$1 == "material" {for (n = 1; n <= NF; n++) column[$n] = n; next}
+	{
+		size = $(column["budget_bytes"])
+		if (size != "-" && size != budget || $(column["log_rmse"]) == "-") next
+		method = $2
+		if ($1 == "(median)") {
+			order[++methods] = method
+			bytes[method] = $(column["bytes"]); fit[method] = $(column["fit_s"]); decode[method] = $(column["decode_s"])
+			evaluate[method] = $(column["evaluate_ns"]); rmse[method] = $(column["log_rmse"])
+			all[method] = $(column["psnr_key_db"]) " / " $(column["psnr_env_db"])
+		} else {
+			if (!($1 in seen)) {seen[$1] = 1; materials[++count] = $1}
+			psnr[method, $1] = $(column["psnr_key_db"])
+		}
+	}
+	function published(who, values,    parts, n, line, any) {
+		n = split(values, parts, " ")
+		for (n = 1; n in parts; n += 2) value[parts[n]] = parts[n + 1]
+		line = "| *" who " (published)* | | | | | | |"
+		for (n = 1; n <= count; n++) {
+			line = line " " (materials[n] in value ? "*" value[materials[n]] "*" : "") " |"
+			any += materials[n] in value
+		}
+		split("", value)
+		if (any) print line
+	}
+	END {
+		if (!methods) {print "bench_table.sh: no rows at " budget " bytes" > "/dev/stderr"; exit 1}
+		printf "%s\n", head
+		line = "| method | bytes | fit s | decode s | evaluate ns | log RMSE | PSNR key / env |"; rule = "|---|--:|--:|--:|--:|--:|--:|"
+		for (n = 1; n <= count; n++) {line = line " " materials[n] " |"; rule = rule "--:|"}
+		print line; print rule
+		for (m = 1; m <= methods; m++) {
+			method = order[m]
+			exact = rmse[method] < 1e-6
+			line = sprintf("| %s | %d | %.3g | %.2g | %.3g | %s | %s |", method, bytes[method], fit[method], decode[method], evaluate[method], \
+				exact ? "0" : sprintf("%.4g", rmse[method]), exact ? "exact" : all[method])
+			for (n = 1; n <= count; n++) line = line " " (exact ? "" : psnr[method, materials[n]]) " |"
+			print line
+		}
+		published("Bilgili et al. 2012", "alum-bronze 39.63 blue-metallic-paint 43.16 fruitwood-241 45.74 chrome-steel 26.77 delrin 39.38 yellow-matte-plastic 37.12 gold-metallic-paint 39.40 nickel 41.72")
+		published("Ward", "fruitwood-241 29.96 gold-metallic-paint 26.87 nickel 28.20")
+		published("Cook-Torrance", "fruitwood-241 42.83 gold-metallic-paint 31.69 nickel 27.82")
+		published("Edwards et al.", "fruitwood-241 36.91 gold-metallic-paint 32.99 nickel 24.19")
+		published("Bilgili et al. 2011 (Tucker)", "fruitwood-241 42.5 gold-metallic-paint 38.57 nickel 37.88")
+	}' "$table"

@@ -1,0 +1,123 @@
+/*
+ * The benchmark's inputs: folders, lists and the quick selection.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "bench/inputs.h"
+
+static char folder[] = "/tmp/test-bench-XXXXXX";
+
+static void make_file(const char *name, const char *text)
+{
+	char path[256];
+	FILE *file;
+
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	fclose(file);
+}
+
+static const char *const NAMES[] = {"c.binary", "a.binary", "e.binary", "b.binary", "d.binary", "notes.txt", "list"};
+
+static int make_folder(void **unused)
+{
+	(void)unused;
+	if (!mkdtemp(folder))
+		return -1;
+	for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
+		make_file(NAMES[n], "# a comment\nb\t35 MB\nd\nno-such\n");
+	return 0;
+}
+
+static int remove_folder(void **unused)
+{
+	char path[256];
+
+	(void)unused;
+	for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
+		snprintf(path, sizeof path, "%s/%s", folder, NAMES[n]);
+		unlink(path);
+	}
+	return rmdir(folder);
+}
+
+static void check_names(const struct inputs *inputs, const char *expected)
+{
+	char found[64] = "", name[32];
+
+	for (int n = 0; n < inputs->count; n++) {
+		inputs_name(inputs->paths[n], name, sizeof name);
+		strcat(found, name);
+	}
+	assert_string_equal(found, expected);
+}
+
+static void a_folder_gives_its_merl_files_in_order(void **unused)
+{
+	struct inputs inputs = {.count = 0};
+	(void)unused;
+
+	assert_true(inputs_add(&inputs, folder));
+	inputs_sort(&inputs);
+	check_names(&inputs, "abcde");
+	inputs_free(&inputs);
+}
+
+static void a_list_keeps_what_it_names(void **unused)
+{
+	struct inputs inputs = {.count = 0};
+	char list[256];
+	(void)unused;
+
+	snprintf(list, sizeof list, "%s/list", folder);
+	assert_true(inputs_add(&inputs, folder));
+	inputs_sort(&inputs);
+	assert_true(inputs_keep_listed(&inputs, list));
+	check_names(&inputs, "bd");
+	inputs_free(&inputs);
+}
+
+static void the_quick_selection_spreads_over_the_list(void **unused)
+{
+	struct inputs inputs = {.count = 0};
+	(void)unused;
+
+	assert_true(inputs_add(&inputs, folder));
+	inputs_sort(&inputs);
+	inputs_thin(&inputs, 9);
+	check_names(&inputs, "abcde");
+	inputs_thin(&inputs, 3);
+	check_names(&inputs, "ace");
+	inputs_free(&inputs);
+}
+
+static void what_is_not_there_is_refused(void **unused)
+{
+	struct inputs inputs = {.count = 0};
+	(void)unused;
+
+	assert_false(inputs_add(&inputs, "/nonexistent/folder"));
+	assert_false(inputs_keep_listed(&inputs, "/nonexistent/list"));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_folder_gives_its_merl_files_in_order),
+		cmocka_unit_test(a_list_keeps_what_it_names),
+		cmocka_unit_test(the_quick_selection_spreads_over_the_list),
+		cmocka_unit_test(what_is_not_there_is_refused),
+	};
+	return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
