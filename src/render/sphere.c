@@ -142,6 +142,9 @@ bp_status sphere_plan_make(enum lighting lighting, uint32_t size, uint32_t row_f
 		sphere_plan_free(plan);
 		return error_memory(error, wanted);
 	}
+	/* the plan stays for long: give back what growing has left over */
+	struct place *trimmed = realloc(plan->places, (plan->place_count + 1) * sizeof *trimmed);
+	plan->places = trimmed ? trimmed : plan->places;
 	*out = plan;
 	return BP_OK;
 }

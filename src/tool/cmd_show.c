@@ -115,8 +115,8 @@ static void figure_describe(struct show *show, const struct show_options *option
 	const char *profile = profile_name(material->model->profile);
 
 	figure->dims = material->table.dims;
-	snprintf(figure->title, sizeof figure->title, "%s, profile %s: error, and density c(theta_d, phi_d | theta_h)", material->name,
-	         profile);
+	snprintf(figure->title, sizeof figure->title, "%s, profile %s: %sdensity c(theta_d, phi_d | theta_h)", material->name, profile,
+	         show->truth ? "error, and " : "");
 	if (show->truth)
 		figure->rows[figure->row_count++] = (struct figure_row){"measured", &show->measured};
 	figure->rows[figure->row_count++] = (struct figure_row){"decoded", &show->decoded};
