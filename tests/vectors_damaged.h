@@ -198,7 +198,7 @@ FIXTURE void root_change(const char *path, bool cycle)
 	for (int i = 0; i < 16; i++) {
 		char name[256];
 		memset(name, 'n', 253);
-		sprintf(name + 253, "%02d", i);
+		name[253] = (char)('0' + i / 10), name[254] = (char)('0' + i % 10), name[255] = 0;
 		records[i] = vector_record(name, SHAPE_MARGINALS, &bytes[i]);
 	}
 	vector_archive(path, records, bytes, 16);
