@@ -9,9 +9,12 @@ data = system("cat ".work."/data")
 count = words(methods)
 points = work."/points"
 
-# Okabe and Ito's colours, which colour-blind readers tell apart; our own profiles first and thicker
+# A method keeps its colour (Okabe and Ito's, which colour-blind readers tell apart) and its mark in every plot.
+known = 'default paper tucker zfp archimedean ward cook-torrance edwards'
 array colour[9] = ['#0072B2', '#009E73', '#D55E00', '#E69F00', '#CC79A7', '#56B4E9', '#7F7F7F', '#000000', '#8B4513']
 array shape[9] = [7, 5, 9, 11, 13, 4, 6, 8, 10]
+place(name) = sum [n = 1:words(known)] (word(known, n) eq name ? n : 0)
+style(m) = place(word(methods, m)) > 0 ? place(word(methods, m)) : 9
 own(m) = word(methods, m) eq 'paper' || word(methods, m) eq 'default'
 
 set logscale x
@@ -36,8 +39,8 @@ do for [p = 1:3] {
 	set logscale y
 	set format y '%g'
 	set ylabel 'log RMSE (lower is better)'
-	plot for [m = 1:count] points index m - 1 using p:4 with linespoints lw (own(m) ? 3 : 1.5) ps 1 pt shape[1 + (m - 1) % 9] \
-		lc rgb colour[1 + (m - 1) % 9] title word(methods, m)
+	plot for [m = 1:count] points index m - 1 using p:4 with linespoints lw (own(m) ? 3 : 1.5) ps 1 pt shape[style(m)] \
+		lc rgb colour[style(m)] title word(methods, m)
 
 	set key outside right top Left reverse samplen 2
 	set lmargin at screen 0.505
@@ -45,7 +48,7 @@ do for [p = 1:3] {
 	unset logscale y
 	set format y '%g'
 	set ylabel 'sphere PSNR, key lights, dB (higher is better)'
-	plot for [m = 1:count] points index m - 1 using p:5 with linespoints lw (own(m) ? 3 : 1.5) ps 1 pt shape[1 + (m - 1) % 9] \
-		lc rgb colour[1 + (m - 1) % 9] title word(methods, m)
+	plot for [m = 1:count] points index m - 1 using p:5 with linespoints lw (own(m) ? 3 : 1.5) ps 1 pt shape[style(m)] \
+		lc rgb colour[style(m)] title word(methods, m)
 	unset multiplot
 }

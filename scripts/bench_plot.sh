@@ -18,7 +18,7 @@ awk -F '\t' -v work="$work" '
 	/^# data:/ {sub(/^# data: /, ""); print > (work "/data")}
 	/^#/ {next}
 	$1 == "material" {for (n = 1; n <= NF; n++) column[$n] = n; next}
-	$1 == "(median)" && $(column["log_rmse"]) != "-" && $(column["log_rmse"]) > 1e-9 {
+	$1 == "(median)" && $(column["log_rmse"]) != "-" && $(column["log_rmse"]) > 1e-6 {
 		if ($2 != last) {
 			if (last != "") print "\n" > (work "/points")
 			print last = $2 > (work "/methods")
