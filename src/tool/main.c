@@ -21,6 +21,8 @@
 	X(list)     \
 	X(extract)  \
 	X(verify)   \
+	X(subset)   \
+	X(merge)    \
 	X(synth)    \
 	X(render)   \
 	X(compare)  \

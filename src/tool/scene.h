@@ -1,0 +1,27 @@
+/*
+ * scene.h: which materials a scene file speaks of.
+ *
+ * pbrt, Mitsuba XML, USD ASCII and JSON all write names between quotes. Any text between two quotes of one kind
+ * (" or '), on one line, is a word; what the words mean is not looked at.
+ */
+#ifndef TOOL_SCENE_H
+#define TOOL_SCENE_H
+
+#include <stddef.h>
+
+#include "../brdfpack.h"
+
+/* Words of all the files that were added; zeroed to begin with. */
+struct scene_words {
+	char **word;
+	size_t count, room;
+};
+
+/* Adds the words of a regular file, those that could be a material's name. Errors: BP_ERROR_IO, BP_ERROR_MEMORY. */
+bp_status scene_words_add(struct scene_words *words, const char *path, bp_error *error);
+
+/* Sorts them by their bytes and removes doubles. */
+void scene_words_sort(struct scene_words *words);
+void scene_words_free(struct scene_words *words);
+
+#endif
