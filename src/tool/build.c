@@ -8,9 +8,11 @@
 #include "progress.h"
 #include "report.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 
 bool build_goes_on(const struct build *build)
@@ -215,6 +217,31 @@ static bp_status output_refuse(const char *output, bp_error *error)
 	return BP_OK;
 }
 
+/* With --update: opens the archive that is there, before the workers are forked; none there is as good as an empty one. */
+static bp_status previous_open(struct build *build, bp_error *error)
+{
+	struct stat facts;
+	if (!build->options->update || (stat(build->options->output, &facts) != 0 && errno == ENOENT))
+		return BP_OK;
+	bp_status status = bp_archive_open(build->options->output, &build->previous, error);
+	if (status)
+		return status;
+	void *shared = mmap(NULL, sizeof *build->reused, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	if (shared == MAP_FAILED)
+		return error_memory(error, sizeof *build->reused);
+	build->reused = shared;
+	return BP_OK;
+}
+
+static void previous_close(struct build *build)
+{
+	bp_archive_close(build->previous);
+	if (build->reused) {
+		build->totals.reused = __atomic_load_n(build->reused, __ATOMIC_RELAXED);
+		munmap(build->reused, sizeof *build->reused);
+	}
+}
+
 /* Everything up to the records in the spool. */
 static void build_prepare_and_work(struct build *build)
 {
@@ -234,7 +261,7 @@ static void build_prepare_and_work(struct build *build)
 		missing_report(build);
 	if ((build->items.count == 0 && !streams) || (build->options->strict && !totals_whole(&build->totals)))
 		return;
-	if (output_refuse(options->output, &error) || spool_open(options->output, &build->spool, &error)) {
+	if (output_refuse(options->output, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
 		build_stop(build, options->output, NULL, &error);
 		return;
 	}
@@ -281,6 +308,7 @@ int build_run(const struct build_options *options)
 
 	build_prepare_and_work(&build);
 	workers_stop(build.workers);
+	previous_close(&build);
 	container_close(build.stream);
 	bool whole = totals_whole(&build.totals);
 	if (build_goes_on(&build) && build.totals.packed > 0 && (whole || !options->strict)) {

@@ -17,6 +17,7 @@ struct build_options {
 	struct fit_options fit;
 	unsigned workers;
 	bool strict, json, quiet;
+	bool update;      /* take records of unchanged sources from the archive that stands at `output` */
 	bool any_lattice; /* accept MERL-like files of any legal extents */
 };
 

@@ -31,6 +31,8 @@ struct build {
 	struct spool spool;
 	struct build_totals totals;
 	uint64_t bytes_total, bytes_done; /* of the listed items, for the progress bar */
+	bp_archive *previous;    /* with --update, the archive that is there already; else NULL */
+	uint64_t *reused;        /* records taken from it: counted by the workers, in memory that they share; else NULL */
 	bool stopped;            /* after an error that ends the build; it has been reported */
 };
 

@@ -1,5 +1,6 @@
 #include "build_state.h"
 
+#include "../archive/merge.h"
 #include "../error.h"
 #include "../merl/sha256.h"
 
@@ -69,6 +70,15 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record
 	source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
 	source.nonfinite_count = lattice.nonfinite_count;
 	sha256_finish(&sha, source.sha256);
+	if (build->previous) {
+		status = archive_reuse(build->previous, job->name, &source, &build->options->fit, record, record_bytes, error);
+		if (status || *record) {
+			if (*record)
+				__atomic_fetch_add(build->reused, 1, __ATOMIC_RELAXED);
+			lattice_free(&lattice);
+			return status;
+		}
+	}
 	status = record_pack(&lattice, job->name, &source, &build->options->fit, record, record_bytes, NULL, error);
 	lattice_free(&lattice);
 	return status;

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 enum { BUDGET_LEAST = 1000, BUDGET_MOST = 4000000, BUDGET_USUAL = 60400, EFFORT_USUAL = 5 };
-enum { OPTION_PROFILE = OPTION_LONG, OPTION_BUDGET, OPTION_MAX_ERROR, OPTION_EFFORT, OPTION_MANIFEST, OPTION_STRICT,
+enum { OPTION_PROFILE = OPTION_LONG, OPTION_BUDGET, OPTION_MAX_ERROR, OPTION_EFFORT, OPTION_MANIFEST, OPTION_STRICT, OPTION_UPDATE,
        OPTION_JSON, OPTION_ANY_LATTICE };
 
 static int build_main(const struct command *self, int argc, char **argv)
@@ -23,6 +23,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 		{"effort", required_argument, NULL, OPTION_EFFORT},
 		{"manifest", required_argument, NULL, OPTION_MANIFEST},
 		{"strict", no_argument, NULL, OPTION_STRICT},
+		{"update", no_argument, NULL, OPTION_UPDATE},
 		{"json", no_argument, NULL, OPTION_JSON},
 		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
 		{0},
@@ -41,6 +42,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 		case 'q': options.quiet = true; break;
 		case OPTION_MANIFEST: options.manifest = optarg; break;
 		case OPTION_STRICT: options.strict = true; break;
+		case OPTION_UPDATE: options.update = true; break;
 		case OPTION_JSON: options.json = true; break;
 		case OPTION_ANY_LATTICE: options.any_lattice = true; break;
 		case 'j':
@@ -104,6 +106,9 @@ const struct command command_build = {
 		"      --manifest FILE    only the listed materials; where the list has sizes and SHA-256,\n"
 		"                         a file that differs is refused\n"
 		"      --strict           write no archive when a material is refused or missing\n"
+		"      --update           take the records of unchanged files (the same SHA-256, options and\n"
+		"                         codec) from the OUT.bpk that is there; what the inputs no longer\n"
+		"                         hold is dropped\n"
 		"      --json             one line per material and a summary line, on standard output\n"
 		"  -q, --quiet            no progress bar and no warnings\n"
 		"      --any-lattice      accept files of other extents than MERL's 90 90 180 (for tests)\n"
