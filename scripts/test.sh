@@ -106,8 +106,9 @@ job_asan() {
 job_clang() { build clang CC=clang CFLAGS="-O2 -g -Werror"; }
 job_install() { build test CFLAGS="-O3 -g -Werror" && check "installed library" "$logs/install.log" tests/install.sh build/test; }
 job_python() {
-	build test CFLAGS="-O3 -g -Werror" && check "python reader" "$logs/python.log" tests/python.sh build/test &&
-		check "test vectors" "$logs/vectors.log" tests/python_reader.sh build/test
+	build test CFLAGS="-O3 -g -Werror" || return
+	check "python reader, vectors" "$logs/python-vectors.log" tests/python_reader.sh build/test
+	check "python reader, demo set" "$logs/python-demo.log" tests/python.sh build/test
 }
 job_valgrind() { build test CFLAGS="-O3 -g -Werror" && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }
 

@@ -10,13 +10,13 @@ cd "$scratch"
 "$tool" synth --lattice 12x10x16 in
 python3 "$here/cli/fixtures.py" in
 rm in/truncated.binary in/trailing.binary in/header.binary in/extents.binary in/empty.binary in/unmeasured.binary
-for profile in $("$tool" build --help | sed -n 's/^ *--profile NAME *//p' | grep -o "'[a-z]*'" | tr -d "'"); do
-	if ! "$tool" build -q --any-lattice --profile "$profile" -o "$profile.bpk" in 2>errors; then
-		grep -q 'profile [0-9]* is not known' errors && continue # not in this library yet
+for profile in paper default; do
+	if ! "$tool" build -q --any-lattice --profile $profile -o $profile.bpk in 2>errors; then
+		grep -q 'there is no profile' errors && continue # not in this library
 		cat errors
 		exit 1
 	fi
-	"$tool" extract -C "$profile" "$profile.bpk"
-	python3 "$reader" verify "$profile.bpk"
-	python3 "$here/python_compare.py" "$reader" "$profile.bpk" "$profile"
+	"$tool" extract -C $profile $profile.bpk
+	python3 "$reader" verify $profile.bpk
+	python3 "$here/python_compare.py" "$reader" $profile.bpk $profile
 done

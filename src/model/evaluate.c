@@ -10,7 +10,7 @@ void *table_store_alloc(size_t bytes)
 {
 	enum { CACHE_LINE = 64, LARGE_PAGE = 1 << 21 };
 	size_t alignment = bytes < LARGE_PAGE ? CACHE_LINE : LARGE_PAGE;
-	void *store = aligned_alloc(alignment, (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
+	void *store = aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
 	/* a hint: fewer page faults while filling, fewer misses of the TLB while evaluating */
 	if (store && alignment == LARGE_PAGE)
 		(void)madvise(store, bytes, MADV_HUGEPAGE);
