@@ -62,10 +62,11 @@ void report_material(const struct item *item, const struct outcome *outcome, boo
 		report_error(label, item->source.name, &outcome->error);
 		return;
 	}
-	char warnings[WARNINGS_MAX][WARNING_BYTES];
-	int count = quiet ? 0 : warnings_list(&outcome->head, warnings);
-	for (int i = 0; i < count; i++)
-		report_warning(label, item->source.name, "%s", warnings[i]);
+	if (outcome->head.source.nonfinite_count > 0 && !quiet) { /* a fault of the file; the rest stands in --json */
+		char warnings[WARNINGS_MAX][WARNING_BYTES];
+		warnings_list(&outcome->head, warnings);
+		report_warning(label, item->source.name, "%s", warnings[0]);
+	}
 }
 
 static void summary_json(const char *output, bool written, const struct build_totals *totals)

@@ -3,7 +3,7 @@ code brdfpack synth --lattice 6x6x8 new/folder
 brdfpack synth --lattice 6x6x8 again
 [ "$(ls new/folder | wc -l)" -ge 12 ] && echo "twelve or more"
 diff -r new/folder again && echo same
-code build -q -o out.bpk again
+code build -o out.bpk again
 code brdfpack synth --lattice 3x6x8 x
 code brdfpack synth --lattice 6x6 x
 touch file
