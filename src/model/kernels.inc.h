@@ -7,6 +7,7 @@
 #include "fill.inc.h"
 #include "paper.inc.h"
 #include "robust.inc.h"
+#include "robust_anchor.inc.h"
 
 const struct kernels KERNEL(kernels) = {
 	.density_row = KERNEL(density_row),
@@ -16,6 +17,7 @@ const struct kernels KERNEL(kernels) = {
 	.fill_smooth = KERNEL(fill_smooth),
 	.paper_row = KERNEL(paper_row),
 	.paper_colour = KERNEL(paper_colour),
+	.robust_anchor = KERNEL(robust_anchor),
 	.robust_scale = KERNEL(robust_scale),
 	.robust_sums = KERNEL(robust_sums),
 };

@@ -19,7 +19,8 @@
  * its iteration limit there, with the same result.
  *
  * Per iteration the observations are read twice and copied never: the median is found by counting what lies
- * below a bracket around the expected median and collecting the few inside it.
+ * below a bracket around the expected median and collecting the few inside it. Where the line creeps, one pass
+ * serves many iterations (robust_anchor.h).
  * Sums are compensated and taken about the weighted mean of the iteration before, so neither a large common
  * offset nor a tiny or huge unit (1e-300 to 1e300) loses digits.
  */

@@ -1,0 +1,148 @@
+/* robust_anchor.inc.h: the one pass of robust_anchor.h over all observations. See kernels.h. */
+
+enum { ANCHOR_BLOCK = 256 };
+
+/* The observations of one block about the line: dx, residual, 1 + excess; kept = 1 where surely inside, else 0. */
+struct KERNEL(anchor_block) {
+	double t[ANCHOR_BLOCK], r[ANCHOR_BLOCK], l2[ANCHOR_BLOCK], kept[ANCHOR_BLOCK];
+};
+
+/* Sums of weight r^p t^i over a block, for the i of one call: all p from 0 to last[i]. */
+#define ANCHOR_SWEEP(name, i0, count0, count1, count2)                                                                         \
+	static inline void KERNEL(name)(const struct KERNEL(anchor_block) * b, const double *weight, double (*sum)[ANCHOR_T])  \
+	{                                                                                                                      \
+		lanes4 s[3][6] = {{{0}}};                                                                                      \
+		for (size_t n = 0; n < ANCHOR_BLOCK; n += 4) {                                                                 \
+			const lanes4 t = LANES_LOAD(b->t + n), r = LANES_LOAD(b->r + n);                                       \
+			lanes4 v = LANES_LOAD(weight + n), u;                                                                  \
+			for (int i = 0; i < (i0); i++)                                                                         \
+				v *= t;                                                                                        \
+			u = v;                                                                                                 \
+			for (int p = 0; p < (count0); p++, u *= r)                                                             \
+				s[0][p] += u;                                                                                  \
+			v *= t;                                                                                                \
+			u = v;                                                                                                 \
+			for (int p = 0; p < (count1); p++, u *= r)                                                             \
+				s[1][p] += u;                                                                                  \
+			v *= t;                                                                                                \
+			u = v;                                                                                                 \
+			for (int p = 0; p < (count2); p++, u *= r)                                                             \
+				s[2][p] += u;                                                                                  \
+		}                                                                                                              \
+		for (int p = 0; p < (count0); p++)                                                                             \
+			sum[p][i0] = lanes_sum(&s[0][p]);                                                                      \
+		for (int p = 0; p < (count1); p++)                                                                             \
+			sum[p][(i0) + 1] = lanes_sum(&s[1][p]);                                                                \
+		for (int p = 0; p < (count2); p++)                                                                             \
+			sum[p][(i0) + 2] = lanes_sum(&s[2][p]);                                                                \
+	}
+
+/* At most 12 sums at a time, so that they stay in registers. */
+ANCHOR_SWEEP(anchor_plain, 0, 3, 2, 1)
+ANCHOR_SWEEP(anchor_square_low, 0, 4, 4, 0)
+ANCHOR_SWEEP(anchor_square_high, 2, 3, 2, 1)
+ANCHOR_SWEEP(anchor_fourth_low, 0, 6, 6, 0)
+ANCHOR_SWEEP(anchor_fourth_middle, 2, 5, 4, 0)
+ANCHOR_SWEEP(anchor_fourth_high, 4, 3, 2, 1)
+#undef ANCHOR_SWEEP
+
+static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const struct robust_line *line, const struct anchor_reach *reach,
+                                  struct anchor_sums *out)
+{
+	struct KERNEL(anchor_block) b;
+	double l4[ANCHOR_BLOCK], near[ANCHOR_BLOCK], edge[ANCHOR_BLOCK];
+	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), s = LANES_ALL(line->slope), one = LANES_ALL(1);
+	const lanes4 reach_y = LANES_ALL(reach->centre_y), reach_slope = LANES_ALL(reach->slope);
+	const lanes4 low = LANES_ALL(reach->median_low), high = LANES_ALL(reach->median_high);
+	const lanes4 inner = LANES_ALL(reach->limit_low), outer = LANES_ALL(reach->limit_high), zero = LANES_ALL(0);
+	const mask4 sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
+	double rest[3][ANCHOR_R][ANCHOR_T] = {{{0}}};
+	struct anchor_list *const near_list = out->near, *const edge_list = out->edge;
+	mask4 below = {0, 0, 0, 0}, outside = {0, 0, 0, 0};
+	size_t near_count = 0, edge_count = 0;
+
+	*out = (struct anchor_sums){.near = near_list, .edge = edge_list};
+	near_list->count = edge_list->count = 0;
+	for (size_t start = 0; start < sample->n; start += ANCHOR_BLOCK) {
+		const size_t m = sample->n - start < ANCHOR_BLOCK ? sample->n - start : ANCHOR_BLOCK;
+		const double *x = sample->x + start, *y = sample->y + start;
+		const float *excess = sample->excess + start;
+		double padded[2][ANCHOR_BLOCK];
+		float padded_excess[ANCHOR_BLOCK];
+
+		if (m < ANCHOR_BLOCK) { /* the last block: filled up with copies that are told apart below */
+			for (size_t i = 0; i < ANCHOR_BLOCK; i++) {
+				const size_t from = i < m ? i : m - 1;
+				padded[0][i] = x[from];
+				padded[1][i] = y[from];
+				padded_excess[i] = excess[from];
+			}
+			x = padded[0];
+			y = padded[1];
+			excess = padded_excess;
+		}
+		lanes4 any_near = zero, any_edge = zero;
+		for (size_t i = 0; i < ANCHOR_BLOCK; i += 4) {
+			const mask4 present = {i < m ? -1 : 0, i + 1 < m ? -1 : 0, i + 2 < m ? -1 : 0, i + 3 < m ? -1 : 0};
+			const lanes4 t = LANES_LOAD(x + i) - xo, r = (LANES_LOAD(y + i) - c) - s * t;
+			const lanes4 l = one + __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
+			const lanes4 v = (lanes4)((mask4)r & sign) * l;
+			const lanes4 q = (reach_y + reach_slope * (lanes4)((mask4)t & sign)) * l;
+			const lanes4 most = v + q, least = v - q;
+			const mask4 in = (mask4)(most < inner) & present, out_of = (mask4)(least > outer) & present;
+			const mask4 under = (mask4)(most < low) & present, over = (mask4)(least > high);
+			const lanes4 is_near = (lanes4)(~under & ~over & present & (mask4)one);
+			const lanes4 is_edge = (lanes4)(~in & ~out_of & present & (mask4)one);
+			const lanes4 kept = (lanes4)(in & (mask4)one), l2 = kept * l * l;
+
+			LANES_STORE(b.t + i, t);
+			LANES_STORE(b.r + i, r);
+			LANES_STORE(b.kept + i, kept);
+			LANES_STORE(b.l2 + i, l2);
+			LANES_STORE(l4 + i, l2 * l * l);
+			LANES_STORE(near + i, is_near);
+			LANES_STORE(edge + i, is_edge);
+			any_near += is_near;
+			any_edge += is_edge;
+			below += under; /* true is -1 */
+			outside += out_of;
+		}
+		if (near_count + ANCHOR_BLOCK > near_list->capacity || edge_count + ANCHOR_BLOCK > edge_list->capacity)
+			return false;
+		if (lanes_sum(&any_near) > 0)
+			for (size_t i = 0; i < m; i++) {
+				near_list->x[near_count] = x[i];
+				near_list->y[near_count] = y[i];
+				near_list->excess[near_count] = excess[i];
+				near_count += near[i] > 0;
+			}
+		if (lanes_sum(&any_edge) > 0)
+			for (size_t i = 0; i < m; i++) {
+				edge_list->x[edge_count] = x[i];
+				edge_list->y[edge_count] = y[i];
+				edge_list->excess[edge_count] = excess[i];
+				edge_count += edge[i] > 0;
+			}
+		double sum[3][ANCHOR_R][ANCHOR_T] = {{{0}}};
+		KERNEL(anchor_plain)(&b, b.kept, sum[0]);
+		KERNEL(anchor_square_low)(&b, b.l2, sum[1]);
+		KERNEL(anchor_square_high)(&b, b.l2, sum[1]);
+		KERNEL(anchor_fourth_low)(&b, l4, sum[2]);
+		KERNEL(anchor_fourth_middle)(&b, l4, sum[2]);
+		KERNEL(anchor_fourth_high)(&b, l4, sum[2]);
+		for (int k = 0; k < 3; k++)
+			for (int p = 0; p < ANCHOR_R; p++)
+				for (int i = 0; i < ANCHOR_T; i++)
+					if (sum[k][p][i] != 0)
+						KERNEL(add)(&out->moment[k][p][i], &rest[k][p][i], sum[k][p][i]);
+	}
+	for (int k = 0; k < 3; k++)
+		for (int p = 0; p < ANCHOR_R; p++)
+			for (int i = 0; i < ANCHOR_T; i++)
+				out->moment[k][p][i] += rest[k][p][i];
+	out->below = (size_t)-(below[0] + below[1] + below[2] + below[3]);
+	out->outside = (size_t)-(outside[0] + outside[1] + outside[2] + outside[3]);
+	near_list->count = near_count;
+	edge_list->count = edge_count;
+	return true;
+}
