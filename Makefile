@@ -61,7 +61,7 @@ help:
 	@echo "  check-cli    command-line tests only (tests/cli)"
 	@echo "  check-symbols  every public symbol begins with bp_"
 	@echo "  bench        build, decode, list and verify times beside cat (src/bench); run time against error"
-	@echo "  bench-build  the first half of it"
+	@echo "  bench-build  the first half of it; bench-methods: the second, $(BUILD)/bench/bench-methods.tsv, .svg"
 	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
 	@echo "  uninstall    removes what install wrote"
@@ -162,8 +162,9 @@ bench-methods bench-quick: bench-ready all
 	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BENCH_RUN) $(if $(filter bench-quick,$@),-q -j 2) -o $(BENCH_OUT)/$@.tsv
 	$(Q)scripts/bench_plot.sh $(BENCH_OUT)/$@.tsv $(BENCH_OUT)/$@
 
-bench: bench-build bench-methods
-bench-build: all
+bench: bench-build
+	$(Q)$(MAKE) --no-print-directory bench-methods
+bench-build: bench-data
 	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_build.py --label "$(BENCH_LABEL)" $(or $(BENCH_DATA),$(BUILD)/demo)
 
 $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
