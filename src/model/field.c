@@ -8,7 +8,7 @@
 #include "fill.h"
 #include "select.h"
 
-enum { LEVEL_MAX = 32767, REFINEMENTS = 3 };
+enum { LEVEL_MAX = 32767, REFINEMENTS_PAIR = 8, REFINEMENTS_SLICE = 0 };
 
 struct field_codec {
 	enum wavelet kind;
@@ -163,7 +163,7 @@ bp_status field_fit(struct field_codec *codec, const double *value, const uint8_
 	for (int pass = 0;; pass++) {
 		wavelet_forward(codec->kind, codec->rows, codec->columns, codec->plane, codec->scratch);
 		plane_thin(codec, keep);
-		if (pass == REFINEMENTS)
+		if (pass == (codec->kind == WAVELET_HAAR ? REFINEMENTS_PAIR : REFINEMENTS_SLICE))
 			break;
 		wavelet_inverse(codec->kind, codec->rows, codec->columns, codec->plane, codec->scratch);
 		for (size_t i = 0; i < codec->cells; i++)
