@@ -254,7 +254,7 @@ bp_status record_pack(const struct lattice *lattice, const char *name, const str
 	bp_status status;
 
 	if (!packing.codec)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no profile %d", (int)options->profile);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
 	if (fault)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);
 	status = model_fit(lattice, options, &model, error);

@@ -23,6 +23,7 @@
 	X(verify)   \
 	X(subset)   \
 	X(merge)    \
+	X(recover)  \
 	X(synth)    \
 	X(render)   \
 	X(compare)  \

@@ -1,0 +1,249 @@
+#include "recover.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "../codec/name.h"
+#include "../codec/record.h"
+#include "../error.h"
+#include "index.h"
+#include "writer.h"
+
+/* A material that was seen: a record (offset > 0), or only its name in the index. */
+struct seen {
+	uint64_t offset;
+	uint32_t bytes;
+	bool intact;
+	char name[BP_NAME_BYTES_MAX + 1];
+};
+
+struct scan {
+	int fd;
+	const char *path;
+	uint64_t file_bytes;
+	recover_report_fn *report;
+	void *user;
+	struct seen *seen;
+	size_t count, capacity;
+	uint8_t record[RECORD_BYTES_MAX]; /* the candidate; the scan is malloc'ed */
+};
+
+/* Reads what is there of `count` bytes at `offset`; a bad block of the disk reads as zeros up to the next 4096. */
+static size_t scan_read(const struct scan *scan, uint64_t offset, uint8_t *bytes, size_t count)
+{
+	size_t done = 0;
+	if (offset >= scan->file_bytes)
+		return 0;
+	if (count > scan->file_bytes - offset)
+		count = (size_t)(scan->file_bytes - offset);
+	while (done < count) {
+		ssize_t got = pread(scan->fd, bytes + done, count - done, (off_t)(offset + done));
+		if (got < 0 && errno == EINTR)
+			continue;
+		if (got == 0)
+			break;
+		if (got < 0) {
+			size_t hole = 4096 - (size_t)((offset + done) % 4096);
+			got = (ssize_t)(hole < count - done ? hole : count - done);
+			memset(bytes + done, 0, (size_t)got);
+		}
+		done += (size_t)got;
+	}
+	return done;
+}
+
+static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, uint32_t bytes, bool intact, bp_error *error)
+{
+	struct seen *entry;
+	if (scan->count == scan->capacity) {
+		size_t capacity = scan->capacity ? 2 * scan->capacity : 64;
+		struct seen *grown = realloc(scan->seen, capacity * sizeof *grown);
+		if (!grown)
+			return error_memory(error, capacity * sizeof *grown);
+		scan->seen = grown;
+		scan->capacity = capacity;
+	}
+	entry = &scan->seen[scan->count++];
+	*entry = (struct seen){ .offset = offset, .bytes = bytes, .intact = intact };
+	memcpy(entry->name, name, strlen(name) + 1);
+	return BP_OK;
+}
+
+/* A record at `offset`? *next is where to look on. */
+static bp_status record_try(struct scan *scan, uint64_t offset, uint64_t *next, bp_error *error)
+{
+	struct record_head head;
+	uint32_t head_bytes, record_bytes;
+	size_t there = scan_read(scan, offset, scan->record, RECORD_HEAD_BYTES_MAX);
+	bool intact;
+	*next = offset + 1;
+	if (there < RECORD_PROBE_BYTES || record_probe(scan->record, &head_bytes, &record_bytes, NULL) != BP_OK ||
+	    record_head_parse(scan->record, there, &head, NULL) != BP_OK)
+		return BP_OK;
+	there = scan_read(scan, offset, scan->record, record_bytes);
+	intact = there == record_bytes;
+	for (uint32_t i = 0; intact && i < head.section_count; i++)
+		intact = bytes_crc32(scan->record + head.sections[i].offset, head.sections[i].bytes) == head.sections[i].crc32;
+	*next = offset + (intact ? record_bytes : head_bytes);
+	return seen_add(scan, head.name, offset, record_bytes, intact, error);
+}
+
+/* A leaf of the index at `offset`? Its names are worth having, whatever became of the tree above it. */
+static bp_status leaf_try(struct scan *scan, uint64_t offset, uint64_t *next, bp_error *error)
+{
+	struct index_page page;
+	struct page_expect expect = { 0 };
+	*next = offset + 1;
+	if (scan_read(scan, offset, page.bytes, PAGE_BYTES) != PAGE_BYTES || load_u16(page.bytes + 4) != 0)
+		return BP_OK;
+	expect.first_ordinal = load_u64(page.bytes + 8);
+	if (index_page_parse(&page, &expect, NULL) != BP_OK)
+		return BP_OK;
+	*next = offset + PAGE_BYTES;
+	for (uint32_t i = 0; i < page.count; i++) {
+		struct index_entry entry;
+		bp_status status;
+		index_leaf_entry(&page, i, &entry);
+		status = seen_add(scan, entry.name, entry.offset, 0, false, error);
+		if (status)
+			return status;
+	}
+	return BP_OK;
+}
+
+/* Both magics begin with 0x8B. */
+static bp_status file_scan(struct scan *scan, bp_error *error)
+{
+	enum { WINDOW = 1 << 20 };
+	uint8_t *window = malloc(WINDOW);
+	uint64_t base = 0, position = 0; /* the window's place; where to look next */
+	size_t there = 0;
+	bp_status status = BP_OK;
+	if (!window)
+		return error_memory(error, WINDOW);
+	while (!status && position + RECORD_PROBE_BYTES <= scan->file_bytes) {
+		const uint8_t *found;
+		if (position < base || position + RECORD_PROBE_BYTES > base + there) {
+			base = position;
+			there = scan_read(scan, base, window, WINDOW);
+			if (there < RECORD_PROBE_BYTES)
+				break; /* cut while it was read */
+		}
+		found = memchr(window + (position - base), 0x8B, there - (size_t)(position - base));
+		position = found ? base + (uint64_t)(found - window) : base + there;
+		if (position + RECORD_PROBE_BYTES > base + there)
+			continue;
+		if (memcmp(found, RECORD_MAGIC, RECORD_MAGIC_BYTES) == 0)
+			status = record_try(scan, position, &position, error);
+		else if (memcmp(found, PAGE_MAGIC, 4) == 0)
+			status = leaf_try(scan, position, &position, error);
+		else
+			position++;
+	}
+	free(window);
+	return status;
+}
+
+/* By name; intact ones first, then in the file's order. */
+static int seen_compare(const void *a, const void *b)
+{
+	const struct seen *x = a, *y = b;
+	int order = name_compare(x->name, strlen(x->name), y->name, strlen(y->name));
+	if (order == 0)
+		order = (int)y->intact - (int)x->intact;
+	return order ? order : (x->offset > y->offset) - (x->offset < y->offset);
+}
+
+static void scan_tell(const struct scan *scan, const char *name, uint64_t offset, const char *what)
+{
+	bp_error why;
+	error_set(&why, BP_ERROR_CORRUPT, offset, "%s", what);
+	if (scan->report)
+		scan->report(scan->user, name, &why);
+}
+
+/* Copies each name's first intact record. */
+static bp_status records_save(struct scan *scan, struct archive_writer *writer, struct recovery *out, bp_error *error)
+{
+	for (size_t i = 0, same; i < scan->count; i += same) {
+		const struct seen *first = &scan->seen[i];
+		bp_status status;
+		for (same = 1; i + same < scan->count && strcmp(scan->seen[i + same].name, first->name) == 0; same++)
+			if (scan->seen[i + same].intact)
+				scan_tell(scan, first->name, scan->seen[i + same].offset, "a second intact record of this name was not saved");
+		if (!first->intact) {
+			scan_tell(scan, first->name, first->offset, "lost: its record is damaged");
+			out->lost++;
+			continue;
+		}
+		if (scan_read(scan, first->offset, scan->record, first->bytes) != first->bytes)
+			return error_set(error, BP_ERROR_IO, first->offset, "%s: changed while it was read", scan->path);
+		status = archive_writer_add(writer, scan->record, first->bytes, error);
+		if (status)
+			return status;
+		out->saved++;
+	}
+	return BP_OK;
+}
+
+static bp_status scan_open(struct scan *scan, const char *damaged, const char *path, bp_error *error)
+{
+	struct stat found, target;
+	scan->path = damaged;
+	scan->fd = open(damaged, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+	if (scan->fd < 0 || fstat(scan->fd, &found) != 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot open: %s", damaged, strerror(errno));
+	if (!S_ISREG(found.st_mode))
+		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "%s: not a regular file, so not a brdfpack archive", damaged);
+	if (stat(path, &target) == 0 && target.st_dev == found.st_dev && target.st_ino == found.st_ino)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: would be overwritten; choose another name for the result", path);
+	scan->file_bytes = (uint64_t)found.st_size;
+	return BP_OK;
+}
+
+bp_status archive_recover(const char *damaged, const char *path, recover_report_fn *report, void *user, struct recovery *out,
+                          bp_error *error)
+{
+	struct scan *scan = calloc(1, sizeof *scan);
+	struct archive_writer *writer = NULL;
+	struct recovery recovery = { 0 };
+	bool any = false;
+	bp_status status;
+	if (!scan)
+		return error_memory(error, sizeof *scan);
+	scan->report = report;
+	scan->user = user;
+	status = scan_open(scan, damaged, path, error);
+	if (!status)
+		status = file_scan(scan, error);
+	if (status)
+		goto out;
+	qsort(scan->seen, scan->count, sizeof *scan->seen, seen_compare);
+	for (size_t i = 0; i < scan->count; i++)
+		any |= scan->seen[i].intact;
+	if (!any) {
+		status = error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s: holds no intact record", damaged);
+		goto out;
+	}
+	status = archive_writer_open(path, &writer, error);
+	if (!status)
+		status = records_save(scan, writer, &recovery, error);
+	if (!status) {
+		status = archive_writer_commit(writer, error);
+		writer = NULL;
+	}
+	if (!status)
+		*out = recovery;
+out:
+	archive_writer_discard(writer);
+	if (scan->fd >= 0)
+		close(scan->fd);
+	free(scan->seen);
+	free(scan);
+	return status;
+}

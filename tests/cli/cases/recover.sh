@@ -1,0 +1,21 @@
+# What is intact in a damaged archive is saved, even without header and index; what is lost is named.
+fixture alpha beta gamma
+build -o out.bpk . >/dev/null
+brdfpack extract -C whole out.bpk
+python3 - <<'PY'
+data = bytearray(open("out.bpk", "rb").read())
+data[data.index(b"\x8bREC", data.index(b"beta")) - 3] ^= 1 # the end of beta's record
+open("hole.bpk", "wb").write(data)
+data[:64] = bytes(64)
+open("headless.bpk", "wb").write(data[:data.index(b"\x8bIDX")])
+PY
+code brdfpack recover -o saved.bpk hole.bpk 2>&1 | sed 's/offset [0-9]*/offset N/'
+code brdfpack recover -o again.bpk headless.bpk 2>&1 | sed 's/offset [0-9]*/offset N/'
+cmp saved.bpk again.bpk
+code brdfpack verify --deep saved.bpk
+brdfpack extract -C saved saved.bpk
+for name in alpha gamma; do cmp "whole/$name.binary" "saved/$name.binary"; done
+code brdfpack recover -o hole.bpk hole.bpk
+code brdfpack recover -o none.bpk whole/alpha.binary
+code brdfpack recover hole.bpk
+ls
