@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "bench/lobe.h"
+#include "bench/lobe_sample.h"
 
 static const struct lattice_dims SMALL = {30, 20, 20};
 
@@ -91,6 +92,50 @@ static void the_cells_angles_agree_with_the_directions(void **state)
 	assert_close(a.cos_h, b.cos_h, 1e-12);
 	assert_close(a.cos_d, b.cos_d, 1e-12);
 	corner_tables_free(&tables);
+}
+
+/* On 4 x 4 x 4 cells; the measures integrated numerically in Python, the cosines from rotated vectors. */
+static void cells_weigh_their_measure_times_the_squared_cosine(void **state)
+{
+	const struct {
+		size_t at;
+		uint32_t cell;
+		double weight;
+	} expected[] = {{0, 0, 1.9923104212196116e-05}, {5, 5, 0.00012090406702608368}, {20, 20, 0.009556389457618168}, {54, 62, 0.012686735798174026}};
+	const struct lattice_dims dims = {4, 4, 4};
+	struct lattice lattice;
+	struct lobe_sample sample;
+	(void)state;
+
+	assert_int_equal(lattice_alloc(dims, &lattice, NULL), BP_OK);
+	for (size_t cell = 0; cell < 64; cell++)
+		lattice.valid[cell] = 1;
+	assert_int_equal(lobe_sample_take(&lattice, 1, 1, &sample, NULL), BP_OK);
+	assert_int_equal(sample.count, 55); /* the others lie beyond 80 degrees */
+	for (size_t n = 0; n < sizeof expected / sizeof *expected; n++) {
+		assert_int_equal(sample.cell[expected[n].at], expected[n].cell);
+		assert_close(sample.weight[expected[n].at], expected[n].weight, 1e-7);
+	}
+	lobe_sample_free(&sample);
+	lattice_free(&lattice);
+}
+
+static void two_albedos_never_go_negative(void **state)
+{
+	double a, b;
+	(void)state;
+
+	/* y = 2 p + 3 l with p, l at an angle: exact */
+	assert_close(nonnegative_pair(1, 0.5, 1, 3.5, 4, &a, &b), 4 + 9 + 6, 1e-12);
+	assert_close(a, 2, 1e-12);
+	assert_close(b, 3, 1e-12);
+	/* y = 2 p - l: the better edge is p alone, a = 1.5, which explains 2.25 */
+	assert_close(nonnegative_pair(1, 0.5, 1, 1.5, 0, &a, &b), 2.25, 1e-12);
+	assert_true(b == 0);
+	assert_close(a, 1.5, 1e-12);
+	/* the same function twice */
+	assert_close(nonnegative_pair(1, 1, 1, 2, 2, &a, &b), 4, 1e-12);
+	assert_close(a + b, 2, 1e-12);
 }
 
 static struct lattice make_table(const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)
@@ -215,6 +260,8 @@ int main(void)
 		cmocka_unit_test(cook_torrance_gives_the_values_worked_out_by_hand),
 		cmocka_unit_test(edwards_gives_the_values_worked_out_by_hand),
 		cmocka_unit_test(the_cells_angles_agree_with_the_directions),
+		cmocka_unit_test(cells_weigh_their_measure_times_the_squared_cosine),
+		cmocka_unit_test(two_albedos_never_go_negative),
 		cmocka_unit_test(ward_recovers_its_own_parameters),
 		cmocka_unit_test(cook_torrance_recovers_its_own_parameters),
 		cmocka_unit_test(edwards_recovers_its_own_parameters),
