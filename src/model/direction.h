@@ -22,8 +22,9 @@
 #include <math.h>
 
 #include "../merl/lattice.h"
+#include "fast_math.h"
 
-/* Where a pair of directions falls: coordinates in cells. */
+/* Where a pair of directions falls: coordinates in cells. p = P means the same as p = 0. */
 struct lattice_point {
 	float h, d, p;
 };
@@ -99,8 +100,11 @@ static inline struct direction_arguments direction_arguments(float ix, float iy,
 	float y = at_pole ? dy : sx * dy - sy * dx, x = at_pole ? dx : -dz * s;
 	return (struct direction_arguments){
 		{sqrtf(ring), d, fabsf(y)}, {sz, s, fabsf(x)},
-		/* opposite signs; on the axes (one of them 0) both ways give the same angle mod pi */
-		(y < 0) != (x < 0) ? 1.0f : 0.0f};
+		/*
+		 * 1 where the signs differ; on the axes (one of them 0) both ways give the same angle mod pi. By bits,
+		 * because compilers make a branch of it otherwise, which no predictor can guess.
+		 */
+		float_of_bits((0 - ((bits_of_float(y) ^ bits_of_float(x)) >> 31)) & 0x3f800000)};
 }
 
 /* The point, from the three arctangents in quarter turns. */

@@ -6,6 +6,9 @@
  * value: decoding costs one shift, and the 2^64 is in the weights.
  */
 #include <string.h>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 #include "locate.inc.h"
 
@@ -34,7 +37,12 @@ static inline void KERNEL(add_row)(f32x8 *sum, const uint16_t *cell, float weigh
 {
 	u16x8 packed;
 	memcpy(&packed, cell, sizeof packed);
-	*sum += (f32x8)(__builtin_convertvector(packed, u32x8) << 13) * weight;
+#ifdef __AVX2__ /* one instruction, of which gcc 12 makes four */
+	u32x8 wide = (u32x8)_mm256_cvtepu16_epi32((__m128i)packed);
+#else
+	u32x8 wide = __builtin_convertvector(packed, u32x8);
+#endif
+	*sum += (f32x8)(wide << 13) * weight;
 }
 
 static inline void KERNEL(expanded_rgb)(const struct table *t, const struct lookup *l, float rgb[3])

@@ -6,16 +6,16 @@
 #include "../error.h"
 #include "direction.h"
 
-enum { NODES = 40, PHIS = 16, BINS = 64 };
+enum { NODES = 40, PHIS_ROOT = 4, PHIS = PHIS_ROOT * PHIS_ROOT, BINS_ROOT = 8, BINS = BINS_ROOT * BINS_ROOT };
 enum { SUB_PHI = 2, SUB_S = 3, SUBS = BINS * SUB_S };
 
 #define PI_F 3.14159265f
 #define COSINE_SHARE 0.06f
 
 struct sampler {
-	float s_edge[BINS + 1];
-	float phi_upper[NODES][PHIS];         /* cumulative mass at the upper edge of each bin of |phi_h|; the last is 1 */
-	float s_upper[NODES][PHIS][BINS];     /* conditional on phi, cumulative, not cut at the horizon; the last is 1 */
+	float s_edge[BINS + 1], s_per[BINS]; /* edges of the bins, and 1 / their widths */
+	float phi_mass[NODES][PHIS + 1];      /* cumulative mass at the edges of the bins of |phi_h|: 0, ..., 1 */
+	float s_mass[NODES][PHIS][BINS + 1];  /* conditional on phi, cumulative at the edges of s, not cut at the horizon: 0, ..., 1 */
 	float albedo[NODES][3];
 };
 
@@ -34,16 +34,15 @@ static double node_theta(int node)
 	return (1 - fmax(rest * rest, 1e-4)) * 1.5707963267948966;
 }
 
-/* A choice that no branch predictor would guess. */
-#define UNPREDICTABLE(condition) __builtin_expect_with_probability((condition), 1, 0.5)
-
 /* The largest s at which wi is above the horizon, for wo at (sine, cosine) and cos phi_h. */
 static inline float horizon_s(float sine, float cosine, float cos_phi)
 {
 	float forward = sine * cos_phi, q2 = forward * forward + cosine * cosine;
 	/* 1 + |sin psi| and 1 - |sin psi|, the latter without cancellation; sin^2 theta_max = (1 + sin psi)/2 */
 	float big = 1 + fabsf(forward) / sqrtf(q2), small = cosine * cosine / (q2 * big);
-	float more = UNPREDICTABLE(cos_phi > 0) ? big : small, less = UNPREDICTABLE(cos_phi > 0) ? small : big;
+	/* exchanged where cos phi < 0; by bits, because no branch predictor would guess it */
+	uint32_t change = (bits_of_float(big) ^ bits_of_float(small)) & (0 - (bits_of_float(cos_phi) >> 31));
+	float more = float_of_bits(bits_of_float(big) ^ change), less = float_of_bits(bits_of_float(small) ^ change);
 	return 0.25f * more / (1 + sqrtf(0.5f * less));
 }
 
@@ -61,9 +60,11 @@ static inline void sine_cosine(float t, float *sine, float *cosine)
 	*sine = ((((-2.38241524e-05f * q + 0.000917722924f) * q - 0.0208626867f) * q + 0.253669322f) * q - 1.23370053f) * q + 1;
 }
 
-/* wo normalised, with the sine of its polar angle and the unit vector of its azimuth ((1, 0) at the pole). */
+/* wo normalised, with the sine of its polar angle, the unit vector of its azimuth ((1, 0) at the pole), and its place between two nodes. */
 struct outgoing {
 	float x, y, z, sine, ex, ey;
+	int node;    /* this one and the next */
+	float share; /* of the next */
 };
 
 static inline float squared_length(const float w[3])
@@ -85,48 +86,58 @@ static inline bool outgoing_set(const float wo[3], struct outgoing *o)
 	bool pole = !(o->sine > 0);
 	o->ex = pole ? 1 : o->x / o->sine;
 	o->ey = pole ? 0 : o->y / o->sine;
+	float at = node_coordinate(o->sine, o->z);
+	int node = (int)at;
+	o->node = node < NODES - 1 ? node : NODES - 2;
+	o->share = at - (float)o->node;
 	return true;
 }
 
 /* ---- Density ---- */
 
-/* The cumulative conditional at s. */
-static inline float cumulative(const struct sampler *p, const float *upper, float s)
+/* Where s lies: its bin, and the share of the bin below it. */
+struct cut {
+	int bin;
+	float share;
+};
+
+static inline struct cut cut_at(const struct sampler *p, float s)
 {
 	int n = s_bin(s);
-	float from = n ? upper[n - 1] : 0, t = (s - p->s_edge[n]) / (p->s_edge[n + 1] - p->s_edge[n]);
-	t = t < 0 ? 0 : t > 1 ? 1 : t;
-	return from + (upper[n] - from) * t;
+	float t = (s - p->s_edge[n]) * p->s_per[n];
+	t = t > 0 ? t : 0;
+	return (struct cut){n, t < 1 ? t : 1};
 }
 
-/* Density over (s, |phi| in units of bins) at one node, for a horizon at s_max. */
-static inline float node_density(const struct sampler *p, int node, int phi, int bin, float s_max)
+/* The cumulative conditional there. */
+static inline float cumulative(const float *mass, struct cut cut)
 {
-	const float *marginal = p->phi_upper[node], *upper = p->s_upper[node][phi];
-	float mass = marginal[phi] - (phi ? marginal[phi - 1] : 0), in_bin = upper[bin] - (bin ? upper[bin - 1] : 0);
-	return mass * in_bin / cumulative(p, upper, s_max);
+	return mass[cut.bin] + (mass[cut.bin + 1] - mass[cut.bin]) * cut.share;
+}
+
+/* Density over (s, |phi| in units of bins) at one node, for a horizon at `top`. */
+static inline float node_density(const struct sampler *p, int node, int phi, int bin, struct cut top)
+{
+	const float *marginal = p->phi_mass[node], *mass = p->s_mass[node][phi];
+	return (marginal[phi + 1] - marginal[phi]) * (mass[bin + 1] - mass[bin]) / cumulative(mass, top);
 }
 
 static float density(const struct sampler *p, const struct outgoing *o, const float wi[3], float squared)
 {
 	float n = direction_normaliser(squared), ix = wi[0] * n, iy = wi[1] * n, iz = wi[2] * n;
-	float hx = ix + o->x, hy = iy + o->y, hz = iz + o->z, ring = hx * hx + hy * hy, length = sqrtf(ring + hz * hz);
-	float along = hx * o->ex + hy * o->ey, across = fabsf(hy * o->ex - hx * o->ey), radius = sqrtf(ring);
-	float cosine_h = hz / length, s = 0.5f * ring / (length * length * (1 + cosine_h));
-	float cos_phi = radius > 0 ? along / radius : 1;
+	float hx = ix + o->x, hy = iy + o->y, hz = iz + o->z, ring = hx * hx + hy * hy, length2 = ring + hz * hz, length = sqrtf(length2);
+	float along = hx * o->ex + hy * o->ey, across = fabsf(hy * o->ex - hx * o->ey);
+	/* sin^2(theta_h / 2) = sin^2 theta_h / (2 (1 + cos theta_h)), without cancellation */
+	float s = 0.5f * ring / (length2 + length * hz);
+	float cos_phi = ring > 0 ? along / sqrtf(ring) : 1;
 	float turns = quarter_turns(across, fabsf(along));
 	turns = fabsf((along < 0 ? 2.0f : 0.0f) - turns);
 	int phi = (int)(turns * (PHIS / 2)), bin = s_bin(s);
 	phi = phi < PHIS ? phi : PHIS - 1;
-	float s_max = horizon_s(o->sine, o->z, cos_phi);
-	float at = node_coordinate(o->sine, o->z);
-	int node = (int)at;
-	node = node < NODES - 1 ? node : NODES - 2;
-	float t = at - (float)node;
-	float lobe = (1 - t) * node_density(p, node, phi, bin, s_max) + t * node_density(p, node + 1, phi, bin, s_max);
+	struct cut top = cut_at(p, horizon_s(o->sine, o->z, cos_phi));
+	float lobe = (1 - o->share) * node_density(p, o->node, phi, bin, top) + o->share * node_density(p, o->node + 1, phi, bin, top);
 	/* per unit of s and phi (both signs), per solid angle of h, then of wi: wo.h = |wi + wo| / 2 */
-	lobe *= PHIS / (2 * PI_F) / (p->s_edge[bin + 1] - p->s_edge[bin]) / 2;
-	lobe /= 2 * length;
+	lobe *= PHIS / (2 * PI_F) / 4 * p->s_per[bin] / length;
 	return COSINE_SHARE / PI_F * iz + (1 - COSINE_SHARE) * lobe;
 }
 
@@ -147,13 +158,19 @@ static inline float unit_interval(float u)
 	return u > 0 ? (u < below_1 ? u : below_1) : 0;
 }
 
-/* The first n of `count` with upper[n] > x; the last where there is none. */
-static inline int find(const float *upper, int count, float x)
+/*
+ * The bin n of root * root with mass[n] <= x < mass[n + 1]; the last where there is none. Two rounds of comparisons that
+ * do not wait for each other, and no branch: faster than halving, whose every step waits for a load.
+ */
+static inline int find(const float *mass, int root, float x)
 {
-	int n = 0;
-	for (int step = count / 2; step; step /= 2) /* count is a power of 2 */
-		n += upper[n + step - 1] <= x ? step : 0;
-	return n;
+	int coarse = 0, fine = 0;
+	for (int k = 1; k < root; k++)
+		coarse += mass[root * k] <= x;
+	mass += root * coarse;
+	for (int k = 1; k < root; k++)
+		fine += mass[k] <= x;
+	return root * coarse + fine;
 }
 
 static void draw_cosine(const float u[2], float wi[3])
@@ -167,21 +184,20 @@ static void draw_cosine(const float u[2], float wi[3])
 
 static void draw_lobe(const struct sampler *p, const struct outgoing *o, int node, const float u[2], float wi[3])
 {
-	const float *marginal = p->phi_upper[node];
-	int phi = find(marginal, PHIS, u[0]);
-	float from = phi ? marginal[phi - 1] : 0, within = (u[0] - from) / (marginal[phi] - from);
-	float flip = within >= 0.5f ? 1.0f : 0.0f; /* the upper half of the bin's numbers: negative phi */
-	within = 2 * within - flip;
-	within = within < 1 ? within : 1;
+	const float *marginal = p->phi_mass[node];
+	int phi = find(marginal, PHIS_ROOT, u[0]);
+	float within = 2 * ((u[0] - marginal[phi]) / (marginal[phi + 1] - marginal[phi]));
+	within = within < 2 ? within : 0x1.fffffep0f;
+	float flip = (float)(int)within; /* the upper half of the bin's numbers: negative phi */
+	within -= flip;
 	float sin_phi, cos_phi;
 	sine_cosine(((float)phi + within) * (2.0f / PHIS), &sin_phi, &cos_phi);
 	sin_phi *= 1 - 2 * flip;
 
-	const float *upper = p->s_upper[node][phi];
-	float s_max = horizon_s(o->sine, o->z, cos_phi), target = u[1] * cumulative(p, upper, s_max);
-	int bin = find(upper, BINS, target);
-	float below = bin ? upper[bin - 1] : 0;
-	float s = p->s_edge[bin] + (p->s_edge[bin + 1] - p->s_edge[bin]) * ((target - below) / (upper[bin] - below));
+	const float *mass = p->s_mass[node][phi];
+	float s_max = horizon_s(o->sine, o->z, cos_phi), target = u[1] * cumulative(mass, cut_at(p, s_max));
+	int bin = find(mass, BINS_ROOT, target);
+	float s = p->s_edge[bin] + (p->s_edge[bin + 1] - p->s_edge[bin]) * ((target - mass[bin]) / (mass[bin + 1] - mass[bin]));
 	s = s < s_max ? s : s_max;
 
 	float sine_h = 2 * sqrtf(s * (1 - s)), hz = 1 - 2 * s;
@@ -203,10 +219,8 @@ float sampler_draw(const struct sampler *p, const float wo[3], const float u[3],
 	if (choice < COSINE_SHARE) {
 		draw_cosine(rest, wi);
 	} else {
-		float at = node_coordinate(o.sine, o.z);
-		int node = (int)at;
-		node = node < NODES - 1 ? node : NODES - 2;
-		draw_lobe(p, &o, choice - COSINE_SHARE < (at - (float)node) * (1 - COSINE_SHARE) ? node + 1 : node, rest, wi);
+		bool later = choice - COSINE_SHARE < o.share * (1 - COSINE_SHARE);
+		draw_lobe(p, &o, o.node + later, rest, wi);
 	}
 	/* on the horizon, by rounding */
 	wi[2] = wi[2] > 1e-7f ? wi[2] : 1e-7f;
@@ -249,7 +263,7 @@ static void place(double theta, int phi, struct scratch *to)
 }
 
 /* Turns densities per s into the cumulative distribution over the bins. */
-static void accumulate(const struct sampler *p, const double *per_s, float *upper)
+static void accumulate(const struct sampler *p, const double *per_s, float *mass)
 {
 	double total = 0, sum = 0;
 	for (int n = 0; n < BINS; n++)
@@ -259,9 +273,10 @@ static void accumulate(const struct sampler *p, const double *per_s, float *uppe
 	double scale = 1 / (total + least * (double)p->s_edge[BINS]);
 	for (int n = 0; n < BINS; n++) {
 		sum += (per_s[n] + least) * (double)(p->s_edge[n + 1] - p->s_edge[n]) * scale;
-		upper[n] = (float)sum;
+		mass[n + 1] = (float)sum;
 	}
-	upper[BINS - 1] = 1;
+	mass[0] = 0;
+	mass[BINS] = 1;
 }
 
 /* Returns the node's whole mass. flat: f is taken as 1. */
@@ -294,16 +309,17 @@ static double build_node(const struct table *table, struct sampler *p, int node,
 			for (int c = 0; c < 3; c++)
 				albedo[c] += sum[c] * ds;
 		}
-		accumulate(p, per_s, p->s_upper[node][phi]);
+		accumulate(p, per_s, p->s_mass[node][phi]);
 		masses[phi] = visible;
 		total += visible;
 	}
 	double sum = 0, least = total > 0 ? 1e-3 * total / PHIS : 1;
 	for (int phi = 0; phi < PHIS; phi++) {
 		sum += masses[phi] + least;
-		p->phi_upper[node][phi] = (float)(sum / (total + least * PHIS));
+		p->phi_mass[node][phi + 1] = (float)(sum / (total + least * PHIS));
 	}
-	p->phi_upper[node][PHIS - 1] = 1;
+	p->phi_mass[node][0] = 0;
+	p->phi_mass[node][PHIS] = 1;
 	/* dw_h = 2 ds dphi, both signs of phi, PHIS bins of pi/PHIS */
 	for (int c = 0; c < 3; c++)
 		p->albedo[node][c] = flat ? 0 : (float)(albedo[c] * 4 * 3.14159265358979324 / PHIS);
@@ -323,6 +339,8 @@ bp_status sampler_build(const struct table *table, struct sampler **out, bp_erro
 		double edge = (double)n / BINS;
 		p->s_edge[n] = (float)(0.5 * edge * edge * edge * edge);
 	}
+	for (int n = 0; n < BINS; n++)
+		p->s_per[n] = 1 / (p->s_edge[n + 1] - p->s_edge[n]);
 	for (int m = 0; m < SUBS; m++) {
 		int bin = m / SUB_S;
 		float s = p->s_edge[bin] + (p->s_edge[bin + 1] - p->s_edge[bin]) * GAUSS[m % SUB_S];
