@@ -40,7 +40,7 @@ TOOL_LIBS    := -larchive -lnettle -lpng
 TEST_LIBS    := -lcmocka -lgsl -lgslcblas
 
 # The benchmark alone links solvers and other people's codecs; its tests are left out where these are missing.
-BENCH_C      := $(filter-out src/bench/main.c,$(wildcard src/bench/*.c))
+BENCH_C      := $(filter-out src/bench/main.c src/bench/eval_main.c,$(wildcard src/bench/*.c))
 BENCH_O      := $(BENCH_C:%.c=$(BUILD)/%.o)
 BENCH_LIBS   := -lgsl -lgslcblas -llapacke -lzfp -lzstd -llzma
 BENCH_DEBIAN := libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev
@@ -62,6 +62,7 @@ help:
 	@echo "  check-symbols  every public symbol begins with bp_"
 	@echo "  bench        build, decode, list and verify times beside cat (src/bench); run time against error"
 	@echo "  bench-build  the first half of it; bench-methods: the second, $(BUILD)/bench/bench-methods.tsv, .svg"
+	@echo "  bench-eval   load, evaluate and sample beside the raw table"
 	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
 	@echo "  uninstall    removes what install wrote"
@@ -162,6 +163,16 @@ bench-methods bench-quick: bench-ready all
 	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BENCH_RUN) $(if $(filter bench-quick,$@),-q -j 2) -o $(BENCH_OUT)/$@.tsv
 	$(Q)scripts/bench_plot.sh $(BENCH_OUT)/$@.tsv $(BENCH_OUT)/$@
 
+# Load, evaluate and sample beside the raw table: the same data, packed first. BENCH_EVAL_FLAGS=-s: the spread of sampling weights.
+$(BUILD)/bench/brdfpack-bench-eval: $(BUILD)/src/bench/eval_main.o $(BUILD)/bench.a $(BUILD)/internal.a
+	@mkdir -p $(@D)
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARY_LIBS)
+BENCH_EVAL_FLAGS ?=
+bench-eval: bench-data $(BUILD)/bench/brdfpack-bench-eval
+	$(Q)[ -f $(BENCH_OUT)/eval.bpk ] || { mkdir -p $(BENCH_OUT) && $(BUILD)/brdfpack build -q -o $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo); }
+	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BUILD)/bench/brdfpack-bench-eval $(BENCH_EVAL_FLAGS) $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo)
+
 bench: bench-build
 	$(Q)$(MAKE) --no-print-directory bench-methods
 bench-build: bench-data
@@ -190,5 +201,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick install uninstall clean FORCE
+.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
