@@ -146,6 +146,8 @@ check-symbols: all
 BENCH_OUT    ?= $(BUILD)/bench
 BENCH_LABEL  ?= $(if $(BENCH_DATA),MERL files in $(BENCH_DATA),demo set of brdfpack synth)
 BENCH_FLAGS  ?=
+# where scripts/demo.sh puts it too
+BENCH_DEMO   := $(BUILD)/demo/materials
 $(BUILD)/bench/brdfpack-bench: $(BUILD)/src/bench/main.o $(BENCH_PARTS)
 	@[ "$(BENCH_READY)" = yes ] || { echo "the benchmark needs: apt-get install $(BENCH_DEBIAN)"; exit 1; }
 	@mkdir -p $(@D)
@@ -155,9 +157,9 @@ $(BUILD)/bench/brdfpack-bench: $(BUILD)/src/bench/main.o $(BENCH_PARTS)
 bench-ready:
 	@[ "$(BENCH_READY)" = yes ] || { echo "the benchmark needs: apt-get install $(BENCH_DEBIAN)"; exit 1; }
 
-BENCH_RUN = $(BUILD)/bench/brdfpack-bench $(BENCH_FLAGS) -l "$(BENCH_LABEL)" $(or $(BENCH_DATA),$(BUILD)/demo)
+BENCH_RUN = $(BUILD)/bench/brdfpack-bench $(BENCH_FLAGS) -l "$(BENCH_LABEL)" $(or $(BENCH_DATA),$(BENCH_DEMO))
 bench-data: all
-	$(Q)[ -n "$(BENCH_DATA)" ] || [ -d $(BUILD)/demo ] || $(BUILD)/brdfpack synth $(BUILD)/demo
+	$(Q)[ -n "$(BENCH_DATA)" ] || [ -d $(BENCH_DEMO) ] || { mkdir -p $(dir $(BENCH_DEMO)) && $(BUILD)/brdfpack synth $(BENCH_DEMO); }
 bench-methods bench-quick: bench-ready all
 	$(Q)$(MAKE) --no-print-directory $(BUILD)/bench/brdfpack-bench bench-data
 	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BENCH_RUN) $(if $(filter bench-quick,$@),-q -j 2) -o $(BENCH_OUT)/$@.tsv
@@ -176,7 +178,7 @@ bench-eval: bench-data $(BUILD)/bench/brdfpack-bench-eval
 bench: bench-build
 	$(Q)$(MAKE) --no-print-directory bench-methods
 bench-build: bench-data
-	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_build.py --label "$(BENCH_LABEL)" $(or $(BENCH_DATA),$(BUILD)/demo)
+	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_build.py --label "$(BENCH_LABEL)" $(or $(BENCH_DATA),$(BENCH_DEMO))
 
 $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
 	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
