@@ -309,7 +309,7 @@ class Field:
             plane[index // n][index % n] = value
         plane = [inverse_line(row, column_levels, self.low) for row in plane]
         plane = [inverse_line(list(column), row_levels, self.low) for column in zip(*plane)]
-        return [[max(plane[c][r], 0.0) for c in range(self.columns)] for r in range(self.rows)]
+        return [[min(max(plane[c][r], 0.0), 1e6) for c in range(self.columns)] for r in range(self.rows)]
 
 
 def read_fields(data, at, count, rows, columns, low):
@@ -345,6 +345,7 @@ def decode_paper(record, layers):
     demand(1 in found and len(found[1]) == 8 + 4 * (h + d + p), "corrupt", record.base, "marginals")
     scale, *marginals = struct.unpack(f"<d{h + d + p}f", found[1])
     demand(all(0 <= x < math.inf for x in [scale] + marginals), "corrupt", record.base, "marginals")
+    demand(all(math.isfinite(c[1] * scale) for c in record.colour), "corrupt", record.base, "scale times specular")
     f_h, f_d, f_phi = marginals[:h], marginals[h:h + d], marginals[h + d:]
     hd = read_fields(found[2], 0, 1, h, d, HAAR)[0] if 2 in found else Field(h, d, 0, 0, HAAR)
     hphi = read_fields(found[3], 0, 1, h, p, HAAR)[0] if 3 in found else Field(h, p, 0, 0, HAAR)
@@ -359,11 +360,11 @@ def decode_paper(record, layers):
     for i in range(h):
         conditional = c_slices[min(i, len(slices) - 1)]
         for j in range(d):
-            row = f_h[i] * f_d[j] * c_hd[i][j]
+            row = min(min(f_h[i] * f_d[j], 1e15) * c_hd[i][j], 1e15)
             for k in range(p):
-                b = row * f_phi[k] * c_hphi[i][k] * conditional[j][k]
+                b = row * min(f_phi[k] * c_hphi[i][k], 1e15) * conditional[j][k]
                 for c, (diffuse, specular, *_) in enumerate(record.colour):
-                    rgb[c].append(max(0.0, diffuse + specular * scale * b))
+                    rgb[c].append(min(max(0.0, diffuse + specular * scale * b), 1e304))
     return rgb
 
 

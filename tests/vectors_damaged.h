@@ -300,7 +300,29 @@ FIXTURE void change_section_twice(struct record_head *head, struct section_list 
 	write_bytes(again, sections->bytes[0].bytes, sections->bytes[0].count);
 }
 
+/* specular x scale beyond the range of a double */
+FIXTURE void change_overflow(struct record_head *head, struct section_list *sections)
+{
+	head->colour[1].specular = 1e200;
+	put(sections->bytes[0].bytes, UINT64_C(0x6974E718D7D7625A), 8); /* 1e200 */
+}
+
+/* Everything as large as it may be: values meet their limit, or are 0. */
+FIXTURE void change_limits(struct record_head *head, struct section_list *sections)
+{
+	uint8_t *marginals = sections->bytes[0].bytes;
+	head->colour[0] = (struct colour_fit){ 1e308, 0, 1, 1, 0 };
+	head->colour[1] = (struct colour_fit){ -1e308, 1e154, 1, 1, 0 };
+	head->colour[2] = (struct colour_fit){ 0, 1e150, 1, 1, 0 };
+	put(marginals, UINT64_C(0x5FE3E9F5B0F5A5A5), 8); /* about 4.8e153 */
+	for (int i = 0; i < 6 + 5 + 8; i++)
+		put(marginals + 8 + 4 * i, i % 3 ? 0x7F7FFFFF : 0, 4); /* the largest float, and 0 */
+	put(sections->bytes[1].bytes + 4, 0x7F7FFFFF, 4); /* the step of c_hd */
+}
+
 FIXTURE void make_nan(const char *path) { sections_change(path, change_nan); }
+FIXTURE void make_overflow(const char *path) { sections_change(path, change_overflow); }
+FIXTURE void make_limits(const char *path) { sections_change(path, change_limits); }
 FIXTURE void make_marginal_bytes(const char *path) { sections_change(path, change_marginal_bytes); }
 FIXTURE void make_coefficients(const char *path) { sections_change(path, change_coefficients); }
 FIXTURE void make_stream_short(const char *path) { sections_change(path, change_stream_short); }

@@ -212,6 +212,10 @@ static bp_status marginals_read(const struct section_bytes *section, struct mode
 	paper->scale = read_f64(&in);
 	if (!(paper->scale >= 0) || !isfinite(paper->scale))
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the scale is %g", paper->scale);
+	for (int c = 0; c < 3; c++)
+		if (!isfinite(model->colour[c].specular * paper->scale))
+			return error_set(error, BP_ERROR_CORRUPT, 0, "channel %d: the scale %g and the specular parameter %g overflow", c,
+			                 paper->scale, model->colour[c].specular);
 	for (int axis = 0; axis < 3; axis++) {
 		uint32_t count = marginal_count(model->dims, axis);
 		paper->marginal[axis] = malloc(count * sizeof(float));

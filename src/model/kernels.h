@@ -85,7 +85,8 @@ struct kernels {
 
 	/* out = row column dphi (NULL: 1), of paper_expand.c; and rgb = max(0, diffuse + specular achromatic). */
 	void (*paper_row)(float row, const float *column, const float *dphi, size_t n, float *out);
-	void (*paper_colour)(const float *achromatic, size_t n, const float diffuse[3], const float specular[3], float *const rgb[3]);
+	void (*paper_colour)(const float *achromatic, size_t n, const float diffuse[3], const float specular[3], float limit,
+	                     float *const rgb[3]);
 
 	/*
 	 * With v = |y - line| (1 + excess) of every observation: *below = how many are < low; copies those in [low, high] to

@@ -10,7 +10,8 @@ static void KERNEL(paper_row)(float row, const float *column, const float *dphi,
 			out[k] = row * column[k];
 }
 
-static void KERNEL(paper_colour)(const float *achromatic, size_t n, const float diffuse[3], const float specular[3], float *const rgb[3])
+static void KERNEL(paper_colour)(const float *achromatic, size_t n, const float diffuse[3], const float specular[3], float limit,
+                                 float *const rgb[3])
 {
 	for (int c = 0; c < 3; c++) {
 		const float a = diffuse[c], b = specular[c];
@@ -18,7 +19,8 @@ static void KERNEL(paper_colour)(const float *achromatic, size_t n, const float 
 
 		for (size_t k = 0; k < n; k++) {
 			float v = a + b * achromatic[k];
-			out[k] = v > 0 ? v : 0;
+			v = v > 0 ? v : 0;
+			out[k] = v < limit ? v : limit;
 		}
 	}
 }

@@ -19,6 +19,9 @@ struct slices {
 	float *column;             /* f_phi c_hphi of the slice */
 };
 
+/* Values stay below this, in 1/sr, so that they are finite in a MERL file too, which multiplies by 1500. Only hostile records come near. */
+static const double VALUE_MAX = 1e304;
+
 /* Factors stay below this, so that no product of them leaves the range of float. */
 static const float FACTOR_MAX = 1e15f;
 
@@ -121,6 +124,7 @@ bp_status paper_expand(const struct model *model, uint32_t layers, struct expans
 		diffuse[c] = (float)ldexp(model->colour[c].diffuse, -largest);
 		specular[c] = (float)ldexp(model->colour[c].specular * scale, scale_exponent - largest);
 	}
+	const float limit = (float)fmin(VALUE_MAX / out->unit, 1e37);
 	bp_status status = slices_begin(paper, d, layers, &s, error);
 	if (status)
 		goto out;
@@ -133,7 +137,7 @@ bp_status paper_expand(const struct model *model, uint32_t layers, struct expans
 		float *const rgb[3] = {out->rgb[0] + i * cells, out->rgb[1] + i * cells, out->rgb[2] + i * cells};
 
 		slice_expand(&s, i, achromatic);
-		kernels->paper_colour(achromatic, cells, diffuse, specular, rgb);
+		kernels->paper_colour(achromatic, cells, diffuse, specular, limit, rgb);
 	}
 out:
 	free(achromatic);
