@@ -4,7 +4,7 @@
 #     scripts/setup.sh [build|test|slow|bench]...      default: build
 #
 #     build  what the tool and the library need
-#     test   what the unit tests and command-line tests need besides
+#     test   what the unit tests (also those of the benchmark) and command-line tests need besides
 #     slow   what the clang, sanitizer and valgrind jobs need besides
 #     bench  what the benchmarks and their plots need besides
 #
@@ -13,9 +13,9 @@ set -euo pipefail
 
 # package:command, where any version of the command will do, however it was installed
 build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
-test="libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config"
+test="libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
-bench="gnuplot-nox:gnuplot liblapacke-dev libgsl-dev libzfp-dev libzstd-dev liblzma-dev"
+bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 
 wanted=""
 for group in "${@:-build}"; do
