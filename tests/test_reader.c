@@ -1,5 +1,6 @@
 #include "archive_fixture.h"
 
+#include <pthread.h>
 #include <sys/stat.h>
 
 static const char *const NAMES[] = { "brass", "chrome", "delrin", "nickel" };
@@ -184,6 +185,42 @@ static void verify_names_each_damaged_material(void **state)
 	free(file);
 }
 
+static void *read_everything(void *user)
+{
+	bp_archive *archive = user;
+	for (int turn = 0; turn < 50; turn++)
+		for (uint64_t i = 0; i < 4; i++) {
+			bp_material_info info = { .struct_bytes = sizeof info };
+			uint64_t found;
+			if (bp_archive_find(archive, NAMES[i], &found, NULL) != BP_OK || found != i ||
+			    bp_archive_info(archive, i, &info, NULL) != BP_OK || strcmp(info.name, NAMES[i]) != 0)
+				return user;
+		}
+	return bp_archive_verify(archive, 0, NULL, NULL, NULL) == BP_OK ? NULL : user;
+}
+
+static void eight_threads_read_through_one_handle(void **state)
+{
+	pthread_t threads[8];
+	bp_archive *archive;
+	uint64_t before, each;
+	(void)state;
+	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 500);
+	archive = opened(fixture_path("a.bpk"));
+	before = bp_archive_bytes_read(archive);
+	assert_null(read_everything(archive));
+	each = bp_archive_bytes_read(archive) - before;
+	for (int i = 0; i < 8; i++)
+		assert_int_equal(pthread_create(&threads[i], NULL, read_everything, archive), 0);
+	for (int i = 0; i < 8; i++) {
+		void *failed;
+		assert_int_equal(pthread_join(threads[i], &failed), 0);
+		assert_null(failed);
+	}
+	assert_int_equal(bp_archive_bytes_read(archive), before + 9 * each); /* none is lost in counting */
+	bp_archive_close(archive);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -192,6 +229,7 @@ int main(void)
 		cmocka_unit_test(what_is_not_an_archive_is_called_so),
 		cmocka_unit_test(newer_versions_and_hostile_headers_are_told_apart),
 		cmocka_unit_test(a_file_cut_while_open_gives_an_error),
+		cmocka_unit_test(eight_threads_read_through_one_handle),
 		cmocka_unit_test(verify_names_each_damaged_material),
 	};
 	return cmocka_run_group_tests(tests, fixture_folder_make, fixture_folder_remove);
