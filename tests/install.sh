@@ -33,6 +33,12 @@ if command -v g++ >/dev/null; then
 	g++ -x c++ "${flags[@]}" -o "$scratch/cpp" tests/consumer.c "${shared[@]}"
 	[ "$("$scratch/cpp" "$archive")" = "$count" ]
 fi
+# the documentation's example draws a sphere: 160 x 160 pixels, and not all alike
+cc -std=c17 "${flags[@]}" -O2 -o "$scratch/sphere" examples/sphere.c "${shared[@]}" -lm
+"$scratch/sphere" "$archive" "$("$scratch/usr/bin/brdfpack" list --json "$archive" | sed -n '1s/.*"name": "\([^"]*\)".*/\1/p')" "$scratch/sphere.ppm"
+[ "$(wc -c <"$scratch/sphere.ppm")" = $((15 + 3 * 160 * 160)) ]
+[ "$(tail -c +16 "$scratch/sphere.ppm" | od -An -v -tu1 -w3 | sort -u | wc -l)" -gt 100 ]
+if "$scratch/sphere" "$archive" no-such-material "$scratch/none.ppm" 2>/dev/null; then exit 1; fi
 # nothing but zlib, libm and libc at run time
 needed=$(readelf -d "$scratch/usr/lib/libbrdfpack.so" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | grep -v '^libz\.\|^libm\.\|^libc\.\|^ld-linux' || true)
 [ -z "$needed" ] || { echo "libbrdfpack needs $needed"; exit 1; }
