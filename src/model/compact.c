@@ -1,83 +1,139 @@
 #include "compact.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../error.h"
-#include "fast_math.h"
 
-/* A row as the blocks want it: `cells` values, the first repeated at the end as often as the last block is short, and once more. */
+/* A row as the blocks want it: `padded` values, those past the row's end being its first ones again. */
 struct compact_row {
-	float *root;     /* fourth root of G (or of the mean), in [0, 1] */
-	float *ratio[2]; /* log2(R/G), log2(B/G); 0 where the cell is 0 */
+	float *root;     /* fourth root of the mean of the channels, in [0, 1] */
+	float *share[2]; /* R and B as shares of the sum; 1/3 where the cell is black */
+	float *weight;   /* what the shares' errors count, in (0, 1]: little in dark cells */
 };
 
-/*
- * Least squares for the three ratio codes of a block: rows of (A^T A)^-1 A^T for hat functions at 0, half, 2 half
- * over cells 0..width, as long as each code has a cell of its own (width >= half + 1; a block of MERL has 18 and 9).
- */
-static void fit_matrix(uint32_t width, uint32_t half, float fit[3][COMPACT_WIDTH_MAX + 1])
+enum { CELLS_MAX = COMPACT_WIDTH_MAX + 1 };
+
+/* Shares of cells well below this count little: 1e-3/sr, as a share of the table's largest value, within reason. */
+static float dark_of(double largest)
 {
-	double hat[3][COMPACT_WIDTH_MAX + 1] = {{0}}, normal[3][6] = {{0}};
+	double dark = 1e-3 / largest;
+	return (float)(dark < 0x1p-11 ? fmax(dark, 0x1p-31) : 0x1p-11);
+}
+
+/* Hat functions at cells 0, half and 2 half. */
+struct hats {
+	uint32_t width, half;
+	float value[3][CELLS_MAX];
+	float fit[3][CELLS_MAX]; /* (A^T A)^-1 A^T: the codes for weights that are all alike */
+};
+
+/* Solves the symmetric positive definite 3 x 3 system for `columns` right-hand sides, which follow in the rows. */
+static void solve(float (*m)[3 + CELLS_MAX], uint32_t columns)
+{
+	for (int a = 0; a < 3; a++) { /* Gauss-Jordan; no pivoting is needed */
+		float pivot = 1 / m[a][a];
+		for (uint32_t b = 0; b < 3 + columns; b++)
+			m[a][b] *= pivot;
+		for (int c = 0; c < 3; c++) {
+			float factor = m[c][a];
+			for (uint32_t b = 0; c != a && b < 3 + columns; b++)
+				m[c][b] -= factor * m[a][b];
+		}
+	}
+}
+
+/*
+ * Least squares over cells 0..width: every hat function has a cell of its own as long as width > half
+ * (a block of MERL has 18 and 9).
+ */
+static void hats_make(uint32_t width, uint32_t half, struct hats *out)
+{
+	float system[3][3 + CELLS_MAX] = {{0}};
+	memset(out, 0, sizeof *out);
+	out->width = width;
+	out->half = half;
 	for (uint32_t k = 0; k <= width; k++) {
 		uint32_t m = k < half ? 0 : 1;
-		double t = (double)(k - m * half) / half;
-		hat[m][k] = 1 - t;
-		hat[m + 1][k] = t;
+		float t = (float)(k - m * half) / (float)half;
+		out->value[m][k] = 1 - t;
+		out->value[m + 1][k] = t;
 	}
 	for (int a = 0; a < 3; a++) {
 		for (int b = 0; b < 3; b++)
 			for (uint32_t k = 0; k <= width; k++)
-				normal[a][b] += hat[a][k] * hat[b][k];
-		normal[a][3 + a] = 1;
+				system[a][b] += out->value[a][k] * out->value[b][k];
+		for (uint32_t k = 0; k <= width; k++)
+			system[a][3 + k] = out->value[a][k];
 	}
-	for (int a = 0; a < 3; a++) { /* Gauss-Jordan; the matrix is positive definite, so no pivoting */
-		double pivot = 1 / normal[a][a];
-		for (int b = 0; b < 6; b++)
-			normal[a][b] *= pivot;
-		for (int c = 0; c < 3; c++) {
-			double factor = normal[c][a];
-			for (int b = 0; c != a && b < 6; b++)
-				normal[c][b] -= factor * normal[a][b];
+	solve(system, width + 1);
+	for (int a = 0; a < 3; a++)
+		for (uint32_t k = 0; k <= width; k++)
+			out->fit[a][k] = system[a][3 + k];
+}
+
+static void fit_weighted(const struct hats *hats, const float *share, const float *weight, float codes[3])
+{
+	float system[3][3 + CELLS_MAX] = {{0}};
+	for (int a = 0; a < 3; a++) {
+		for (uint32_t k = 0; k <= hats->width; k++) {
+			float w = hats->value[a][k] * weight[k];
+			for (int b = 0; b < 3; b++)
+				system[a][b] += w * hats->value[b][k];
+			system[a][3] += w * share[k];
+		}
+		system[a][a] *= 1.0001f; /* where only dark cells lie under a hat */
+	}
+	solve(system, 1);
+	for (int a = 0; a < 3; a++)
+		codes[a] = system[a][3];
+}
+
+/* The three codes of a block's shares, within the range of the shares themselves. */
+static void fit_shares(const struct hats *hats, const float *share, const float *weight, float codes[3])
+{
+	const float STEEP = 0.02f; /* from this range within a block on, dark cells may mislead the plain fit */
+	float low = share[0], high = share[0];
+	for (uint32_t k = 1; k <= hats->width; k++) {
+		low = share[k] < low ? share[k] : low;
+		high = share[k] > high ? share[k] : high;
+	}
+	if (high - low > STEEP) {
+		fit_weighted(hats, share, weight, codes);
+	} else {
+		for (int a = 0; a < 3; a++) {
+			codes[a] = 0;
+			for (uint32_t k = 0; k <= hats->width; k++)
+				codes[a] += hats->fit[a][k] * share[k];
 		}
 	}
 	for (int a = 0; a < 3; a++)
-		for (uint32_t k = 0; k <= width; k++) {
-			double sum = 0;
-			for (int b = 0; b < 3; b++)
-				sum += normal[a][3 + b] * hat[b][k];
-			fit[a][k] = (float)sum;
-		}
+		codes[a] = codes[a] > low ? (codes[a] < high ? codes[a] : high) : low;
 }
 
-static void row_prepare(const struct expansion *e, size_t row, float factor, uint32_t padded, int channels, struct compact_row *out)
+static void row_prepare(const struct expansion *e, size_t row, float factor, float dark, uint32_t padded, int channels,
+                        struct compact_row *out)
 {
 	const uint32_t width = e->dims.phi_d;
 	const float *red = e->rgb[0] + row * width, *green = e->rgb[1] + row * width, *blue = e->rgb[2] + row * width;
-	if (channels == 1) {
-		float third = factor / 3;
-		for (uint32_t k = 0; k < width; k++)
-			out->root[k] = sqrtf(sqrtf(red[k] * third + green[k] * third + blue[k] * third));
-	} else {
-		for (uint32_t k = 0; k < width; k++) {
-			float r = red[k] * factor, g = green[k] * factor, b = blue[k] * factor;
-			float most = r > g ? r : g;
-			most = b > most ? b : most;
-			most = most > 0x1p-100f ? most : 0;
-			float least = most > 0 ? most * 0x1p-12f : 1; /* keeps the logarithms of a zero cell at 0 */
-			g = g > least ? g : least;
-			r = r > least ? r : least;
-			b = b > least ? b : least;
-			float l = fast_log2f(g);
-			out->ratio[0][k] = fast_log2f(r) - l;
-			out->ratio[1][k] = fast_log2f(b) - l;
-			out->root[k] = most > 0 ? sqrtf(sqrtf(g)) : 0;
-		}
+	float *restrict root = out->root, *restrict r_share = out->share[0], *restrict b_share = out->share[1], *restrict weight = out->weight;
+	const float third = factor / 3;
+	for (uint32_t k = 0; k < width; k++) {
+		float r = red[k] * third, b = blue[k] * third, mean = r + green[k] * third + b;
+		bool black = mean < 0x1p-120f;
+		float per = 1 / (black ? 1 : mean), bright = mean / (mean + dark);
+		r_share[k] = black ? 1.0f / 3 : r * per;
+		b_share[k] = black ? 1.0f / 3 : b * per;
+		weight[k] = bright * bright + 1e-6f;
+		root[k] = sqrtf(sqrtf(mean));
 	}
 	for (uint32_t k = width; k < padded; k++) {
 		out->root[k] = out->root[k - width];
 		for (int c = 0; c < 2 && channels == 3; c++)
-			out->ratio[c][k] = out->ratio[c][k - width];
+			out->share[c][k] = out->share[c][k - width];
+		if (channels == 3)
+			out->weight[k] = out->weight[k - width];
 	}
 }
 
@@ -104,9 +160,9 @@ static void block_roots(const float *root, uint32_t count, uint8_t *block)
 	}
 }
 
-static uint32_t ratio_code(float ratio, float base, float per)
+static uint32_t share_code(float share, float base, float per)
 {
-	float code = (ratio - base) * per + 0.5f;
+	float code = (share - base) * per + 0.5f;
 	return (uint32_t)(code < 0 ? 0 : code > 4095 ? 4095 : (int32_t)code);
 }
 
@@ -124,47 +180,46 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 
 	const uint32_t padded = blocks * t->width + 1, kept = 3 * blocks;
 	const float factor = table_factor(largest);
-	size_t scratch_bytes = (3 * (size_t)padded + 2 * rows * kept) * sizeof(float);
+	size_t scratch_bytes = (4 * (size_t)padded + 2 * rows * kept) * sizeof(float);
 	float *scratch = malloc(scratch_bytes);
 	t->store = table_store_alloc(t->store_bytes);
 	if (!scratch || !t->store) {
 		free(scratch);
 		return error_memory(error, scratch ? t->store_bytes : scratch_bytes);
 	}
-	struct compact_row row = {scratch, {scratch + padded, scratch + 2 * padded}};
-	float *knots[2] = {scratch + 3 * padded, scratch + 3 * padded + rows * kept};
-	float low[2] = {0, 0}, high[2] = {0, 0}, fit[3][COMPACT_WIDTH_MAX + 1];
-	fit_matrix(t->width, t->half, fit);
+	struct compact_row row = {scratch, {scratch + padded, scratch + 2 * padded}, scratch + 3 * padded};
+	float *knots[2] = {scratch + 4 * padded, scratch + 4 * padded + rows * kept};
+	float low[2] = {1, 1}, high[2] = {0, 0};
+	const float dark = dark_of(largest * e->unit);
+	struct hats hats;
+	hats_make(t->width, t->half, &hats);
 
 	for (size_t r = 0; r < rows; r++) {
-		row_prepare(e, r, factor, padded, t->channels, &row);
+		row_prepare(e, r, factor, dark, padded, t->channels, &row);
 		for (uint32_t b = 0; b < blocks; b++) {
 			uint8_t *block = t->store + r * t->row + b * t->block_bytes;
 			memset(block, 0, t->block_bytes);
 			block_roots(row.root + b * t->width, t->width + 1, block);
-			for (int c = 0; c < 2 && t->channels == 3; c++)
+			for (int c = 0; c < 2 && t->channels == 3; c++) {
+				float *codes = knots[c] + (r * blocks + b) * 3;
+				fit_shares(&hats, row.share[c] + b * t->width, row.weight + b * t->width, codes);
 				for (int a = 0; a < 3; a++) {
-					const float *ratio = row.ratio[c] + b * t->width;
-					float sum = 0;
-					for (uint32_t k = 0; k <= t->width; k++)
-						sum += fit[a][k] * ratio[k];
-					sum = sum < -13 ? -13 : sum > 13 ? 13 : sum;
-					knots[c][(r * blocks + b) * 3 + (size_t)a] = sum;
-					low[c] = sum < low[c] ? sum : low[c];
-					high[c] = sum > high[c] ? sum : high[c];
+					low[c] = codes[a] < low[c] ? codes[a] : low[c];
+					high[c] = codes[a] > high[c] ? codes[a] : high[c];
 				}
+			}
 		}
 	}
 	memset(t->store + rows * t->row, 0, TABLE_SLACK_BYTES);
 	for (int c = 0; c < 2; c++) {
-		t->ratio_base[c] = low[c];
-		t->ratio_step[c] = (high[c] - low[c]) / 4095;
+		t->share_base[c] = low[c];
+		t->share_step[c] = (high[c] - low[c]) / 4095;
 	}
 	if (t->channels == 3) {
 		float per[2] = {high[0] > low[0] ? 4095 / (high[0] - low[0]) : 0, high[1] > low[1] ? 4095 / (high[1] - low[1]) : 0};
 		for (size_t n = 0; n < rows * kept; n++) {
-			uint32_t code = ratio_code(knots[0][n], low[0], per[0]) | ratio_code(knots[1][n], low[1], per[1]) << 12;
-			uint8_t *at = t->store + n / 3 * COMPACT_BLOCK_RGB + COMPACT_RATIOS + 3 * (n % 3);
+			uint32_t code = share_code(knots[0][n], low[0], per[0]) | share_code(knots[1][n], low[1], per[1]) << 12;
+			uint8_t *at = t->store + n / 3 * COMPACT_BLOCK_RGB + COMPACT_SHARES + 3 * (n % 3);
 			at[0] = (uint8_t)code;
 			at[1] = (uint8_t)(code >> 8);
 			at[2] = (uint8_t)(code >> 16);

@@ -7,23 +7,24 @@
  *
  *     0  uint16 base, uint16 step     16-bit floats as in the expanded form
  *     4  uint8  residual[19]          of the block's cells and, last, of the next block's first
- *    23  3 x (12 bit, 12 bit)         log2(R/G), log2(B/G) at the block's cells 0, half and 2 half
+ *    23  3 x (12 bit, 12 bit)         R/(R+G+B), B/(R+G+B) at the block's cells 0, half and 2 half
  *
- *     G = (base + step residual)^4 unit
- *     R = G exp2(ratio_base + ratio_step code), linear in phi_d between the three codes; B likewise
+ *     S = (base + step residual)^4 3 unit      R = S r      B = S b      G = S (1 - r - b)
+ *     r = share_base + share_step code, linear in phi_d between the three codes; b likewise
  *
  * The fourth root stands for the logarithm: an error that is nearly relative, an exact 0, and
- * decoding by two multiplications. G counts as at least 2^-12 of the largest channel of its cell.
- * With one channel (the mean), blocks have 24 bytes and no ratios.
+ * decoding by two multiplications. The shares are smooth where a channel goes to 0, which ratios are not; those of dark
+ * cells count little in the fit of the codes.
+ * With one channel (the mean), blocks have 24 bytes and no shares.
  */
 #ifndef MODEL_COMPACT_H
 #define MODEL_COMPACT_H
 
 #include "table.h"
 
-enum { COMPACT_WIDTH_MAX = 18, COMPACT_RESIDUALS = 4, COMPACT_RATIOS = 23, COMPACT_BLOCK_RGB = 32, COMPACT_BLOCK_MONO = 24 };
+enum { COMPACT_WIDTH_MAX = 18, COMPACT_RESIDUALS = 4, COMPACT_SHARES = 23, COMPACT_BLOCK_RGB = 32, COMPACT_BLOCK_MONO = 24 };
 
-/* Sets the table's row, width, ratios and store from an expansion whose largest value (in its own unit) is `largest`. */
+/* Sets the table's row, width, shares and store from an expansion whose largest value (in its own unit) is `largest`. */
 bp_status compact_fill(struct table *table, const struct expansion *expansion, float largest, bp_error *error);
 
 #endif

@@ -1,9 +1,7 @@
 /* compact.inc.h: evaluation in the compact form (compact.h). Included after expanded.inc.h, once plain and once for AVX2. */
 #include "compact.h"
 
-typedef int32_t i32x8 __attribute__((vector_size(32)));
-
-/* offset and steps in bytes; residual, ratio: bytes from the block's start; place: between the two ratio codes */
+/* offset and steps in bytes; residual, share: bytes from the block's start; place: between the two share codes */
 static inline struct lookup KERNEL(compact_find)(const struct table *t, struct cell cell)
 {
 	/* k < 1024, so the product with the reciprocal, rounded up, truncates to the exact quotient */
@@ -14,7 +12,7 @@ static inline struct lookup KERNEL(compact_find)(const struct table *t, struct c
 		.step_h = (uint32_t)cell.i + 1 < t->dims.theta_h ? t->row * t->dims.theta_d : 0,
 		.step_d = (uint32_t)cell.j + 1 < t->dims.theta_d ? t->row : 0,
 		.residual = COMPACT_RESIDUALS + in,
-		.ratio = COMPACT_RATIOS + 3 * later,
+		.share = COMPACT_SHARES + 3 * later,
 		.h = cell.h,
 		.d = cell.d,
 		.p = cell.p,
@@ -36,24 +34,12 @@ static inline uint32_t KERNEL(load16)(const uint8_t *at)
 	return value;
 }
 
-/* 2^x for |x| <= 24; relative error below 3e-7 */
-static inline void KERNEL(exp2_lanes)(f32x8 *x)
-{
-	const float magic = 12582912.0f; /* 1.5 2^23: rounds to an integer in the low bits */
-	f32x8 shifted = *x + magic, f = *x - (shifted - magic);
-	f32x8 p = 0.00133335581f * f + 0.00961812911f;
-	p = p * f + 0.0555041087f;
-	p = p * f + 0.240226507f;
-	p = p * f + 0.693147181f;
-	p = p * f + 1;
-	*x = p * (f32x8)(((u32x8)shifted + 127) << 23);
-}
-
 /*
- * G times its weight in each of the four rows (theta_h, theta_d), (., +1), (+1, .), (+1, +1), interpolated along phi_d.
+ * The mean of the channels times its weight in each of the four rows (theta_h, theta_d), (., +1), (+1, .), (+1, +1),
+ * interpolated along phi_d.
  * The first byte of a pair of residuals is the low one: this form is made and read on little-endian machines only.
  */
-static inline f32x4 KERNEL(compact_green)(const struct lookup *l, const uint8_t *const block[4])
+static inline f32x4 KERNEL(compact_mean)(const struct lookup *l, const uint8_t *const block[4])
 {
 	uint32_t h0 = KERNEL(load32)(block[0]), h1 = KERNEL(load32)(block[1]), h2 = KERNEL(load32)(block[2]), h3 = KERNEL(load32)(block[3]);
 	uint32_t r0 = KERNEL(load16)(block[0] + l->residual), r1 = KERNEL(load16)(block[1] + l->residual);
@@ -72,28 +58,28 @@ static inline f32x4 KERNEL(compact_green)(const struct lookup *l, const uint8_t 
 static inline void KERNEL(compact_rgb)(const struct table *t, const struct lookup *l, float rgb[3])
 {
 	const uint8_t *const a = t->store + l->offset, *const b = a + l->step_d, *const c = a + l->step_h, *const d = c + l->step_d;
-	f32x4 green = KERNEL(compact_green)(l, (const uint8_t *const[4]){a, b, c, d});
+	f32x4 mean = KERNEL(compact_mean)(l, (const uint8_t *const[4]){a, b, c, d});
 
-	/* R/G of the four rows, then B/G, at phi_d itself: within a cell the ratios' change is far below their steps */
-	uint32_t a0 = KERNEL(load32)(a + l->ratio), b0 = KERNEL(load32)(b + l->ratio);
-	uint32_t c0 = KERNEL(load32)(c + l->ratio), d0 = KERNEL(load32)(d + l->ratio);
-	uint32_t a1 = KERNEL(load32)(a + l->ratio + 3), b1 = KERNEL(load32)(b + l->ratio + 3);
-	uint32_t c1 = KERNEL(load32)(c + l->ratio + 3), d1 = KERNEL(load32)(d + l->ratio + 3);
-	u32x8 from = {a0, b0, c0, d0, a0 >> 12, b0 >> 12, c0 >> 12, d0 >> 12}, to = {a1, b1, c1, d1, a1 >> 12, b1 >> 12, c1 >> 12, d1 >> 12};
-	f32x8 from_code = __builtin_convertvector((i32x8)(from & 4095), f32x8), to_code = __builtin_convertvector((i32x8)(to & 4095), f32x8);
-	float sr = t->ratio_step[0], sb = t->ratio_step[1], br = t->ratio_base[0], bb = t->ratio_base[1];
-	f32x8 ratio = (from_code + (to_code - from_code) * l->place) * (f32x8){sr, sr, sr, sr, sb, sb, sb, sb} + (f32x8){br, br, br, br, bb, bb, bb, bb};
-	KERNEL(exp2_lanes)(&ratio);
-	f32x8 colour = ratio * (f32x8){green[0], green[1], green[2], green[3], green[0], green[1], green[2], green[3]};
-	rgb[0] = ((colour[0] + colour[1]) + (colour[2] + colour[3])) * t->unit;
-	rgb[1] = ((green[0] + green[1]) + (green[2] + green[3])) * t->unit;
-	rgb[2] = ((colour[4] + colour[5]) + (colour[6] + colour[7])) * t->unit;
+	/* the shares of the four rows at phi_d itself: within a cell their change is far below that of the mean */
+	u32x4 from = {KERNEL(load32)(a + l->share), KERNEL(load32)(b + l->share), KERNEL(load32)(c + l->share), KERNEL(load32)(d + l->share)};
+	u32x4 to = {KERNEL(load32)(a + l->share + 3), KERNEL(load32)(b + l->share + 3), KERNEL(load32)(c + l->share + 3),
+	            KERNEL(load32)(d + l->share + 3)};
+	f32x4 red_from = __builtin_convertvector((i32x4)(from & 4095), f32x4), red_to = __builtin_convertvector((i32x4)(to & 4095), f32x4);
+	f32x4 blue_from = __builtin_convertvector((i32x4)(from >> 12 & 4095), f32x4);
+	f32x4 blue_to = __builtin_convertvector((i32x4)(to >> 12 & 4095), f32x4);
+	f32x4 red = ((red_from + (red_to - red_from) * l->place) * t->share_step[0] + t->share_base[0]) * mean;
+	f32x4 blue = ((blue_from + (blue_to - blue_from) * l->place) * t->share_step[1] + t->share_base[1]) * mean;
+	f32x4 green = mean - red - blue;
+	float unit = 3 * t->unit, g = (green[0] + green[1]) + (green[2] + green[3]);
+	rgb[0] = ((red[0] + red[1]) + (red[2] + red[3])) * unit;
+	rgb[1] = (g > 0 ? g : 0) * unit; /* below 0 by the codes' rounding */
+	rgb[2] = ((blue[0] + blue[1]) + (blue[2] + blue[3])) * unit;
 }
 
 static inline void KERNEL(compact_mono)(const struct table *t, const struct lookup *l, float rgb[3])
 {
 	const uint8_t *const a = t->store + l->offset, *const c = a + l->step_h;
-	f32x4 mean = KERNEL(compact_green)(l, (const uint8_t *const[4]){a, a + l->step_d, c, c + l->step_d});
+	f32x4 mean = KERNEL(compact_mean)(l, (const uint8_t *const[4]){a, a + l->step_d, c, c + l->step_d});
 	rgb[0] = rgb[1] = rgb[2] = ((mean[0] + mean[1]) + (mean[2] + mean[3])) * t->unit;
 }
 

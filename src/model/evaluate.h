@@ -19,7 +19,7 @@
 
 #include "../merl/lattice.h"
 
-/* A table's largest value, in 1/sr, is cut to this: a float holds it with room for the compact form's colour ratios. */
+/* A table's largest value, in 1/sr, is cut to this: a float holds it with room to spare. */
 #define TABLE_LARGEST 1e34
 
 enum table_form { TABLE_EXPANDED = 0, TABLE_COMPACT = 1 };

@@ -7,7 +7,7 @@
 /* One look-up: four rows of phi_d in memory, and the weights. Both forms use offset to p; the compact form all. */
 struct lookup {
 	uint32_t offset, step_h, step_d; /* from the table's start; to the next row along theta_h, along theta_d (0 at the end) */
-	uint32_t residual, ratio;
+	uint32_t residual, share;
 	float h, d, p; /* fractions; at the end of theta_h and theta_d the step is 0, so any value will do */
 	float place;
 };
@@ -31,7 +31,7 @@ static inline struct cell KERNEL(cell)(const struct table *t, struct lattice_poi
 enum { BLOCK = 64 };
 
 struct lookups {
-	uint32_t offset[BLOCK], step_h[BLOCK], step_d[BLOCK], residual[BLOCK], ratio[BLOCK];
+	uint32_t offset[BLOCK], step_h[BLOCK], step_d[BLOCK], residual[BLOCK], share[BLOCK];
 	float h[BLOCK], d[BLOCK], p[BLOCK], place[BLOCK];
 	float usable[BLOCK]; /* 1, or 0: the value is 0 */
 };
@@ -70,7 +70,7 @@ static size_t KERNEL(locate)(const struct table *t, size_t count, const float *c
 		to->step_h[m] = l.step_h;                                                                                            \
 		to->step_d[m] = l.step_d;                                                                                            \
 		to->residual[m] = l.residual;                                                                                        \
-		to->ratio[m] = l.ratio;                                                                                              \
+		to->share[m] = l.share;                                                                                              \
 		to->h[m] = l.h;                                                                                                      \
 		to->d[m] = l.d;                                                                                                      \
 		to->p[m] = l.p;                                                                                                      \
@@ -133,7 +133,7 @@ static inline void KERNEL(fetch)(const struct table *t, const struct lookups *l,
 			for (size_t m = 0; m < n; m++) {                                                                                 \
 				if (m < later)                                                                                               \
 					KERNEL(fetch)(t, next, m, UNIT);                                                                         \
-				struct lookup lookup = {now->offset[m], now->step_h[m], now->step_d[m], now->residual[m], now->ratio[m],     \
+				struct lookup lookup = {now->offset[m], now->step_h[m], now->step_d[m], now->residual[m], now->share[m],     \
 				                        now->h[m],      now->d[m],      now->p[m],      now->place[m]};                      \
 				float value[3];                                                                                              \
 				VALUE(t, &lookup, value);                                                                                    \

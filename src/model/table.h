@@ -24,9 +24,9 @@ struct table {
 	uint32_t row; /* expanded: uint16_t in a row of phi_d; compact: bytes in one */
 
 	/* compact only */
-	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between ratio codes */
+	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between share codes */
 	float half_reciprocal;
-	float ratio_base[2], ratio_step[2]; /* log2(R/G), log2(B/G) of code 0, and from code to code */
+	float share_base[2], share_step[2]; /* R/(R+G+B), B/(R+G+B) of code 0, and from code to code */
 
 	uint8_t *store; /* the cells, then TABLE_SLACK_BYTES that may be read and mean nothing */
 	size_t store_bytes;
