@@ -223,7 +223,8 @@ bp_status archive_recover(const char *damaged, const char *path, recover_report_
 		status = file_scan(scan, error);
 	if (status)
 		goto out;
-	qsort(scan->seen, scan->count, sizeof *scan->seen, seen_compare);
+	if (scan->count > 0) /* qsort must not be given NULL */
+		qsort(scan->seen, scan->count, sizeof *scan->seen, seen_compare);
 	for (size_t i = 0; i < scan->count; i++)
 		any |= scan->seen[i].intact;
 	if (!any) {
