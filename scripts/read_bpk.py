@@ -181,16 +181,20 @@ class Record:
         return data
 
     def load(self, layers, known):
-        """{type: bytes} of the sections of layers 0..layers-1 whose (type, codec, version) is known."""
-        found = {}
+        """{type: bytes} of the sections of layers 0..layers-1 whose (type, codec, version) is known, each type once."""
+        return {entry[0]: data for entry, data in self.load_list(layers, known, True)}
+
+    def load_list(self, layers, known, unique=False):
+        """[(entry, bytes)] likewise, in the order of the file."""
+        found = []
         for entry in self.sections:
             if entry[3] >= layers:
                 continue
             if entry[:3] not in known:
                 demand(not entry[4] & 1, "unsupported", self.base + entry[6], f"section {entry[:3]}")
                 continue
-            demand(entry[0] not in found, "corrupt", self.base + entry[6], "a section twice")
-            found[entry[0]] = self.section(entry)
+            demand(not unique or all(entry[0] != other[0] for other, _ in found), "corrupt", self.base + entry[6], "a section twice")
+            found.append((entry, self.section(entry)))
         return found
 
     def decode(self, layers=0):
@@ -228,6 +232,15 @@ class RangeDecoder:
         else:
             bit, self.code, self.range, p = 1, self.code - bound, self.range - bound, p - (p >> shift)
         model[:] = p, s
+        self.refill()
+        return bit
+
+    def bit_with(self, p):
+        bound = (self.range >> 16) * p
+        bit = int(self.code >= bound)
+        if bit:
+            self.code -= bound
+        self.range = self.range - bound if bit else bound
         self.refill()
         return bit
 
@@ -368,7 +381,268 @@ def decode_paper(record, layers):
     return rgb
 
 
-DECODERS = {1: decode_paper}
+# ---- 9: the default profile ----
+
+def rounded(x, least, most):
+    return math.floor(min(max(x, least), most) + 0.5)
+
+
+STRETCH = [rounded(256 * math.log((i + 0.5) / (4095.5 - i)), -2047, 2047) for i in range(4096)]
+SQUASH = [rounded(65536 / (1 + math.exp(-(i - 2048) / 256)), 16, 65520) for i in range(4096)]
+RATE = [655360 // (10 * n + 16) for n in range(251)]
+LEAST = [0, 1, 2, 3, 4, 7, 11, 16, 26, 41, 64, 102, 162, 256, 407, 646]
+SIZES = [sum(v >= x for x in LEAST) - 1 for v in range(647)]
+
+
+def size(v):
+    return SIZES[min(v, 646)]
+
+
+class Mixer:
+    """Contexts [p, n] and weights of one kind of bit, made as they are asked for."""
+
+    def __init__(self):
+        self.contexts, self.weights = [{}, {}, {}, {}], {}
+
+    def bit(self, coder, indices, weights_set):
+        contexts = [c.setdefault(i, [1 << 21, 0]) for c, i in zip(self.contexts, indices)]
+        weights = self.weights.setdefault(weights_set, [19661] * 4)
+        t = [STRETCH[c[0] >> 10] for c in contexts]
+        q = SQUASH[min(max(sum(w * x for w, x in zip(weights, t)) >> 16, -2047), 2047) + 2048]
+        bit = coder.bit_with(65536 - q)
+        e = (bit << 16) - q
+        for i in range(4):
+            weights[i] = min(max(weights[i] + (t[i] * e + 16384 >> 15), -1 << 24), 1 << 24)
+            learn(contexts[i], bit, 60)
+        return bit
+
+
+def learn(context, bit, limit):
+    p, n = context
+    context[:] = min(p + (((bit << 22) - p) * RATE[n] >> 16), (1 << 22) - 1), n + (n < limit)
+
+
+class Quiet:
+    def __init__(self):
+        self.contexts = {}
+
+    def bit(self, coder, index):
+        context = self.contexts.setdefault(index, [83886, 6])
+        bit = coder.bit_with(65536 - min(max(context[0] >> 6, 16), 65520))
+        learn(context, bit, 250)
+        return bit
+
+
+class Band:
+    def __init__(self, rows, columns, orientation, parent, shift):
+        self.y0, self.y1, self.x0, self.x1 = *rows, *columns
+        self.rows, self.columns = self.y1 - self.y0, self.x1 - self.x0
+        self.block_rows, self.block_columns = self.rows + 7 >> 3, self.columns + 7 >> 3
+        self.orientation, self.parent, self.shift = orientation, parent, shift
+
+
+class Planes:
+    """Levels of all fields and harmonics while they are decoded."""
+    B = 22
+
+    def __init__(self, dims, planes):
+        h, d, self.p = dims
+        self.planes, self.hs, self.ds = planes, [h], [d]
+        while min(self.hs[-1], self.ds[-1]) + 1 >> 1 >= 8:
+            self.hs.append(self.hs[-1] + 1 >> 1)
+            self.ds.append(self.ds[-1] + 1 >> 1)
+        top = len(self.hs) - 1
+        self.bands = [Band((0, self.hs[top]), (0, self.ds[top]), 0, None, 0)]
+        for l in range(top, 0, -1):
+            low_h, low_d = (0, self.hs[l]), (0, self.ds[l])
+            high_h, high_d = (self.hs[l], self.hs[l - 1]), (self.ds[l], self.ds[l - 1])
+            for rows, columns, orientation in (low_h, high_d, 1), (high_h, low_d, 2), (high_h, high_d, 3):
+                b = len(self.bands)
+                self.bands.append(Band(rows, columns, orientation, 0 if l == top else b - 3, int(l != top)))
+        # keyed by (field, harmonic, band, row, column); what is not there is 0
+        self.known, self.sign, self.active_bands, self.active_blocks = {}, {}, set(), set()
+        self.band_bits, self.block_bits, self.zero_bits, self.sign_bits, self.refine_bits = (Mixer() for _ in range(5))
+        self.quiet, self.quiet_band, self.quiet_block = Quiet(), Quiet(), Quiet()
+
+    def units(self):
+        return 3 * self.p * self.planes
+
+    def unit(self, coder, u):
+        self.coder = coder
+        plane, f, m = self.planes - 1 - u // (3 * self.p), u // self.p % 3, u % self.p
+        self.plane, self.f, self.m, self.c, self.cls = plane, f, m, int(f > 0), min(m.bit_length(), 7)
+        for b, band in enumerate(self.bands):
+            if (f, m, b) not in self.active_bands:
+                if not self.band_flag(b):
+                    continue
+                self.active_bands.add((f, m, b))
+            for by in range(band.block_rows):
+                for bx in range(band.block_columns):
+                    fresh = int((f, m, b, by, bx) not in self.active_blocks)
+                    if fresh:
+                        if not self.block_flag(b, by, bx):
+                            continue
+                        self.active_blocks.add((f, m, b, by, bx))
+                    for y in range(8 * by, min(8 * by + 8, band.rows)):
+                        for x in range(8 * bx, min(8 * bx + 8, band.columns)):
+                            self.cell(b, y, x, fresh)
+
+    def around_flag(self, flags, *place):
+        f, m = self.f, self.m
+        near = ((f, m - 1, *place) in flags) + ((f, m + 1, *place) in flags)
+        alike = ((f, m - 2, *place) in flags) + ((f, m + 2, *place) in flags)
+        return near, alike, (f > 0 and (0, m, *place) in flags) + (f > 1 and (1, m, *place) in flags)
+
+    def band_flag(self, b):
+        near, alike, others = self.around_flag(self.active_bands, b)
+        parent = int(b == 0 or (self.f, self.m, self.bands[b].parent) in self.active_bands)
+        if not (near or alike or others) and (b == 0 or not parent):
+            return self.quiet_band.bit(self.coder, 2 * self.cls + self.c)
+        return self.band_bits.bit(self.coder, (
+            (((3 * near + alike) * 2 + parent) * 3 + others) * 2 + self.c, (2 * b + parent) * 2 + self.c,
+            (near + alike) * self.B + b, ((2 * others + (alike > 0)) * 2 + (near > 0)) * 2 + self.m % 2), self.c)
+
+    def block_flag(self, b, y, x):
+        band, flags = self.bands[b], self.active_blocks
+
+        def at(dy, dx):
+            return (self.f, self.m, b, y + dy, x + dx) in flags
+        beside, corners = at(0, -1) + at(-1, 0) + at(0, 1) + at(1, 0), at(-1, -1) + at(-1, 1)
+        near, alike, others = self.around_flag(flags, b, y, x)
+        parent = 0
+        if b:
+            above = self.bands[band.parent]
+            parent = int((self.f, self.m, band.parent, min(y >> band.shift, above.block_rows - 1),
+                          min(x >> band.shift, above.block_columns - 1)) in flags)
+        if not (beside or corners or near or alike or others or parent):
+            return self.quiet_block.bit(self.coder, 2 * (self.cls * self.B + b) + self.c)
+        return self.block_bits.bit(self.coder, (
+            (((3 * beside + corners) * 3 + alike) * 3 + near) * 2 + parent, (((3 * b + alike) * 3 + near) * 3 + others) * 2 + self.c,
+            ((5 * others + beside) * 3 + alike) * 2 + parent, (5 * b + beside) * 3 + corners), self.c * self.B + b)
+
+    def cell(self, b, y, x, fresh):
+        known, p, f, m, c, band = self.known, self.plane, self.f, self.m, self.c, self.bands[b]
+
+        def k(dy=0, dx=0, dm=0):
+            return known.get((f, m + dm, b, y + dy, x + dx), 0)
+        left, right, up, down = k(0, -1), k(0, 1), k(-1), k(1)
+        before, after, before2, after2 = k(dm=-1), k(dm=1), k(dm=-2), k(dm=2)
+        around = 2 * (left + right + up + down) + k(-1, -1) + k(-1, 1) + k(1, -1) + k(1, 1) >> p
+        along, half = 2 * (before2 + after2) + before + after >> p, 2 << p if p else 0
+        if k():
+            v = k() >> p + 3
+            tall = v if v < 4 else 4 if v < 8 else 5
+            bit = self.refine_bits.bit(self.coder, (
+                16 * tall + size(around), (16 * tall + size(along)) * 2 + c,
+                (self.B * tall + b) * 16 + size(around + along >> 1), self.cls * self.B + b), tall)
+            known[f, m, b, y, x] = (2 * v + bit << p + 2) + half
+            return
+        others = sum(known.get((g, m, b, y, x), 0) for g in range(3) if g != f) >> p
+        parent = 0
+        if b:
+            parent = known.get((f, m, band.parent, y >> band.shift, x >> band.shift), 0) >> p
+        depth = 0 if p == 0 else 1 if p < 3 else 2
+        everything = size(2 * (around + along + parent) + others >> 1)
+        if everything == 0:
+            bit = self.quiet.bit(self.coder, (((self.cls * self.B + b) * 3 + depth) * 2 + c) * 2 + fresh)
+        else:
+            def tier(v):
+                return 0 if v == 0 else 1 if v >> p < 6 else 2
+            bit = self.zero_bits.bit(self.coder, (
+                (8 * (size(parent) >> 1) + (size(others) >> 1)) * 16 + everything,
+                (((3 * tier(left) + tier(up)) * 3 + tier(right)) * 3 + tier(down)) * 4 + band.orientation,
+                (((3 * tier(before2) + tier(after2)) * 3 + tier(before)) * 3 + tier(after)) * 16 + size(around),
+                (12 * (12 * y // band.rows) + 12 * x // band.columns) * 16 + everything), (c * self.B + b) * 3 + depth)
+        if bit:
+            def s(dy=0, dx=0, dm=0):
+                return self.sign.get((f, m + dm, b, y + dy, x + dx), 0)
+            first = self.sign.get((0, m, b, y, x), 0) if f else 0
+            self.sign[f, m, b, y, x] = 1 + self.sign_bits.bit(self.coder, (
+                (3 * s(0, -1) + s(-1)) * self.B + b, ((3 * s(dm=-2) + s(dm=2)) * 3 + s(dm=-1)) * 3 + first,
+                (((3 * s(0, -1) + s(0, 1)) * 3 + s(-1)) * 3 + s(1)) * 4 + band.orientation, (2 * first + (f > 1)) * self.B + b), c)
+            known[f, m, b, y, x] = (4 << p) + half
+
+
+def binary32(x):
+    return struct.unpack("<f", struct.pack("<f", x))[0]
+
+
+LIFTING = [(0, -binary32(0.443506852043971)), (1, -binary32(0.882911075530934)), (0, binary32(0.052980118572961)), (1, binary32(1.586134342059924))]
+GAIN = binary32(1.149604398860241)
+LOSS = binary32(1 / GAIN)
+
+
+def inverse_lift(x):
+    n = len(x)
+    g, z = n + 1 >> 1, [0.0] * n
+    z[0::2], z[1::2] = [v * LOSS for v in x[:g]], [v * GAIN for v in x[g:]]
+    for first, factor in LIFTING:
+        for i in range(first, n, 2):
+            z[i] += factor * (z[i - 1 if i else 1] + z[i + 1 if i + 1 < n else n - 2])
+    return z
+
+
+DEFAULT_KINDS = {(16, 0, 1), (17, 1, 1)}
+
+
+def decode_default(record, layers):
+    h, d, p = record.dims
+    wanted = record.load_list(layers, DEFAULT_KINDS)
+    demand([(s[0], s[3]) for s, _ in wanted] == [(16, 0)] + [(17, l) for l in range(layers)], "corrupt", record.base, "sections of fields and planes")
+    data = wanted[0][1]
+    demand(len(data) == 76, "corrupt", record.base, "the fields' bytes")
+    unit, *rotation, step, c0, c1, c2, count = struct.unpack("<d12fffffI", data)
+    base, rotation = rotation[:3], rotation[3:]
+    demand(unit > 0 and math.isfinite(unit) and math.frexp(unit)[0] == 0.5 and math.frexp(unit)[1] <= 981 and all(abs(x) <= 64 for x in base) and
+           all(abs(r) <= 1.001 for r in rotation) and
+           0 < step <= 2.0 ** 40 and all(abs(c) <= 1 for c in (c0, c1, c2)) and count <= 24, "corrupt", record.base, "fields")
+    planes, end = Planes(record.dims, count), 0
+    for _, data in wanted[1:]:
+        demand(len(data) >= 4, "corrupt", record.base, "planes")
+        start, end = end, struct.unpack_from("<I", data)[0]
+        demand(start <= end <= planes.units(), "corrupt", record.base, "the planes' end")
+        coder = RangeDecoder(data[4:])
+        for u in range(start, end):
+            planes.unit(coder, u)
+            demand(coder.at <= len(data) - 4, "corrupt", record.base, "planes are short")
+        demand(coder.at == len(data) - 4, "corrupt", record.base, "planes are long")
+
+    fields = []
+    for f in range(3):
+        spectra = [[[0.0] * d for _ in range(h)] for _ in range(p)]
+        for (g, m, b, y, x), k in planes.known.items():
+            if g != f or end <= f * p + m:
+                continue
+            r = count - 1 - (end - 1 - (f * p + m)) // (3 * p)
+            a = (k >> 2) >> r << r
+            if a:
+                value = (a + (c2 * 2 ** r if r else c0 if a == 1 else c1)) * step
+                spectra[m][planes.bands[b].y0 + y][planes.bands[b].x0 + x] = -value if planes.sign[g, m, b, y, x] == 2 else value
+        for plane in spectra:
+            if not any(map(any, plane)):
+                continue
+            for l in range(len(planes.hs) - 2, -1, -1):
+                rows, columns = planes.hs[l], planes.ds[l]
+                for x in range(columns):
+                    for y, value in enumerate(inverse_lift([plane[y][x] for y in range(rows)])):
+                        plane[y][x] = value
+                for y in range(rows):
+                    plane[y][:columns] = inverse_lift(plane[y][:columns])
+        fields.append(spectra)
+    basis = [[math.sqrt((2 if m else 1) / p) * math.cos(math.pi * m * (2 * k + 1) / (2 * p)) for k in range(p)] for m in range(p)]
+    rgb = [[], [], []]
+    for i in range(h):
+        for j in range(d):
+            lines = [[(s[m][i][j], basis[m]) for m in range(p) if s[m][i][j]] for s in fields]
+            for k in range(p):
+                y = [sum(x * line[k] for x, line in terms) for terms in lines]
+                for c in range(3):
+                    l = min(max(base[c] + sum(rotation[3 * f + c] * y[f] for f in range(3)), 0.0), 40.0)
+                    rgb[c].append(unit * (math.expm1(l * math.log(2)) / 512))
+    return rgb
+
+
+DECODERS = {1: decode_paper, 2: decode_default}
 
 
 # ---- commands ----

@@ -101,12 +101,12 @@ FIXTURE void vector_model_free(struct model *model)
 FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct record_head *head, struct section_list *sections)
 {
 	struct encode_request request = { .name_bytes = strlen(name), .record_bytes_max = 60400 };
-	struct model *model = vector_model(shape, (uint32_t)strlen(name) * 7 + (unsigned char)name[0]);
+	struct model *decoded = NULL, *model = vector_model(shape, (uint32_t)strlen(name) * 7 + (unsigned char)name[0]);
 	fixture_head(head, name);
 	head->dims = model->dims;
 	memcpy(head->colour, model->colour, sizeof head->colour);
 	memset(sections, 0, sizeof *sections);
-	assert_int_equal(PAPER_CODEC.encode(model, &request, sections, &head->layer_count, &head->left_out, NULL), BP_OK);
+	assert_int_equal(PAPER_CODEC.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
 		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) }; /* invented: there is no source */
 	vector_model_free(model);

@@ -178,8 +178,9 @@ static bp_status thinned_write(const struct model *model, const struct encode_re
 }
 
 static bp_status paper_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
-                              uint32_t *layer_count, uint32_t *left_out, bp_error *error)
+                              uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
+	(void)decoded;
 	uint64_t bytes;
 	uint32_t low = 0, high = KEEP_ALL; /* low fits, high does not */
 	bp_status status = model_write(model, sections, layer_count, left_out, error);
@@ -312,7 +313,7 @@ static bp_status slices_read(const struct section_bytes *section, struct model *
 static bp_status section_read(const struct section_bytes *section, struct model *model, bp_error *error)
 {
 	struct lattice_dims dims = model->dims;
-	switch ((enum section_type)section->entry->type) {
+	switch (section->entry->type) {
 	case SECTION_MARGINALS: return marginals_read(section, model, error);
 	case SECTION_PAIR_HD: return pair_read(section, dims.theta_h, dims.theta_d, &model->paper->hd, error);
 	case SECTION_PAIR_HPHI: return pair_read(section, dims.theta_h, dims.phi_d, &model->paper->hphi, error);

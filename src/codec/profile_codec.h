@@ -33,10 +33,11 @@ struct profile_codec {
 	uint32_t kind_count;
 	/*
 	 * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least
-	 * possible, when head and sections cannot be as small as request->record_bytes_max.
+	 * possible, when head and sections cannot be as small as request->record_bytes_max. An encoder that knows what
+	 * decoding would give may store it in *decoded (NULL before), which saves measuring it the time; the caller frees it.
 	 */
 	bp_status (*encode)(const struct model *model, const struct encode_request *request, struct section_list *sections,
-	                    uint32_t *layer_count, uint32_t *left_out, bp_error *error);
+	                    uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error);
 	/*
 	 * Builds the profile's part of *model from the sections of the layers that are wanted, in file order; on failure
 	 * record_decode frees what has been attached with model_free. Offsets in errors count from the section's start
@@ -51,5 +52,7 @@ const struct profile_codec *profile_codec_find(enum profile profile);
 
 /* paper_sections.c */
 extern const struct profile_codec PAPER_CODEC;
+/* default_sections.c */
+extern const struct profile_codec DEFAULT_CODEC;
 
 #endif

@@ -48,20 +48,25 @@ static void low_shift(struct range_encoder *encoder)
 	encoder->low = (encoder->low & 0x00FFFFFF) << 8;
 }
 
-void range_encode(struct range_encoder *encoder, struct bit_model *model, uint32_t bit)
+void range_encode_with(struct range_encoder *encoder, uint32_t p, uint32_t bit)
 {
-	uint32_t bound = (encoder->range >> 16) * model->probability;
+	uint32_t bound = (encoder->range >> 16) * p;
 	if (bit) {
 		encoder->low += bound;
 		encoder->range -= bound;
 	} else {
 		encoder->range = bound;
 	}
-	model_update(model, bit);
 	while (encoder->range < RANGE_LEAST) {
 		encoder->range <<= 8;
 		low_shift(encoder);
 	}
+}
+
+void range_encode(struct range_encoder *encoder, struct bit_model *model, uint32_t bit)
+{
+	range_encode_with(encoder, model->probability, bit);
+	model_update(model, bit);
 }
 
 void range_encode_even(struct range_encoder *encoder, uint32_t value, uint32_t count)

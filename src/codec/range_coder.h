@@ -31,6 +31,13 @@ void range_encoder_start(struct range_encoder *encoder, struct byte_buffer *out)
 void range_encode(struct range_encoder *encoder, struct bit_model *model, uint32_t bit);
 /* The lowest `count` bits of value (0..24), the highest first, each with probability 1/2. */
 void range_encode_even(struct range_encoder *encoder, uint32_t value, uint32_t count);
+/* A bit whose probability of being 0 is p / 65536, 1..65535, as somebody else knows it. */
+void range_encode_with(struct range_encoder *encoder, uint32_t p, uint32_t bit);
+/* Bytes that the stream would take if it were ended now. */
+static inline size_t range_encoder_bytes(const struct range_encoder *encoder, size_t start)
+{
+	return encoder->out->count - start + (size_t)encoder->pending + 4;
+}
 void range_encoder_end(struct range_encoder *encoder);
 
 struct range_decoder {
@@ -42,6 +49,18 @@ struct range_decoder {
 void range_decoder_start(struct range_decoder *decoder, const uint8_t *bytes, size_t count);
 uint32_t range_decode(struct range_decoder *decoder, struct bit_model *model);
 uint32_t range_decode_even(struct range_decoder *decoder, uint32_t count);
+static inline uint32_t range_decode_with(struct range_decoder *decoder, uint32_t p)
+{
+	uint32_t bound = (decoder->range >> 16) * p, bit = decoder->code >= bound;
+	decoder->code -= bit ? bound : 0;
+	decoder->range = bit ? decoder->range - bound : bound;
+	while (decoder->range < 1u << 24) {
+		decoder->range <<= 8;
+		decoder->code = decoder->code << 8 | (decoder->at < decoder->count ? decoder->bytes[decoder->at] : 0);
+		decoder->at++;
+	}
+	return bit;
+}
 /* True when exactly the bytes given were used: what an intact stream shows behind its last bit. */
 static inline int range_decoder_ended(const struct range_decoder *decoder)
 {

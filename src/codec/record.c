@@ -115,17 +115,19 @@ static double figure_stored(double figure)
 	return figure < DBL_MAX ? figure : DBL_MAX;
 }
 
-/* Decodes every layer from the record's own bytes and measures it. */
-static bp_status layers_measure(struct record_head *head, const uint8_t *record, const struct lattice *lattice, bp_error *error)
+/* Measures every layer of `decoded`, or, where there is none, decodes every layer from the record's own bytes. */
+static bp_status layers_measure(struct record_head *head, const uint8_t *record, const struct lattice *lattice,
+                                const struct model *decoded, bp_error *error)
 {
 	struct expansion table = { 0 };
 	bp_status status = expansion_alloc(head->dims, &table, error);
 	for (uint32_t l = 0; !status && l < head->layer_count; l++) {
 		struct fidelity *figures = &head->layers[l].fidelity;
 		struct model *model = NULL;
-		status = record_decode(head, l + 1, memory_fetch, (void *)(uintptr_t)record, &model, error);
+		if (!decoded)
+			status = record_decode(head, l + 1, memory_fetch, (void *)(uintptr_t)record, &model, error);
 		if (!status)
-			status = model_expand(model, 0, &table, error);
+			status = model_expand(decoded ? decoded : model, l + 1, &table, error);
 		if (!status)
 			status = fidelity_measure(lattice, &table, figures, error);
 		figures->log_rmse = figure_stored(figures->log_rmse);
@@ -172,16 +174,18 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 	struct packed packed = { .head = packing->head };
 	struct encode_request request = packing->request;
 	struct section_list sections = { 0 };
+	struct model *decoded = NULL;
 	bp_status status;
 
 	request.record_bytes_max = record_bytes_max;
-	status = packing->codec->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, error);
+	status = packing->codec->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, &decoded,
+	                                error);
 	if (status)
 		goto out;
 	/* Once to have the bytes that are decoded, once more with what was measured on them. */
 	status = record_write(&packed.head, &sections, &packed.record, &packed.bytes, error);
 	if (!status)
-		status = layers_measure(&packed.head, packed.record, packing->lattice, error);
+		status = layers_measure(&packed.head, packed.record, packing->lattice, decoded, error);
 	free(packed.record);
 	packed.record = NULL;
 	if (!status)
@@ -195,6 +199,7 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 		*out = packed;
 out:
 	section_list_free(&sections);
+	model_free(decoded);
 	return status;
 }
 

@@ -26,7 +26,9 @@ enum section_type {
 	SECTION_MARGINALS = 1, /* scale and the three marginals */
 	SECTION_PAIR_HD = 2,   /* c_hd */
 	SECTION_PAIR_HPHI = 3, /* c_hphi */
-	SECTION_SLICES = 4     /* c_dphi|h */
+	SECTION_SLICES = 4,    /* c_dphi|h */
+	SECTION_FIELDS = 16,   /* what makes fields of levels, and a table of fields */
+	SECTION_PLANES = 17    /* bit planes of the levels, one section to a layer */
 };
 
 enum section_flag {

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 #include "../error.h"
+#include "../memory.h"
 
 const struct lattice_dims LATTICE_MERL = {90, 90, 180};
 const double MERL_SCALE[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};
@@ -27,19 +27,6 @@ size_t lattice_cells(struct lattice_dims dims)
 	return (size_t)dims.theta_h * dims.theta_d * dims.phi_d;
 }
 
-/* Asks for huge pages where the block holds some: filling a table then takes 20 page faults instead of 9,000. */
-static void prefer_huge_pages(void *block, size_t bytes)
-{
-#ifdef MADV_HUGEPAGE
-	const size_t huge = (size_t)2 << 20;
-	const uintptr_t start = ((uintptr_t)block + huge - 1) / huge * huge, end = ((uintptr_t)block + bytes) / huge * huge;
-	if (end > start)
-		madvise((void *)start, end - start, MADV_HUGEPAGE); /* a hint: failure changes nothing but speed */
-#else
-	(void)block, (void)bytes;
-#endif
-}
-
 /* Three planes of `plane_bytes` and `extra` bytes, zeroed, in one block; planes[3] is where the extra bytes start. */
 static bp_status planes_alloc(size_t plane_bytes, size_t extra, void **block, unsigned char *planes[4], bp_error *error)
 {
@@ -49,7 +36,7 @@ static bp_status planes_alloc(size_t plane_bytes, size_t extra, void **block, un
 	*block = calloc(bytes, 1);
 	if (!*block)
 		return error_memory(error, bytes);
-	prefer_huge_pages(*block, bytes);
+	memory_prefer_huge(*block, bytes);
 	const size_t ahead = (ALIGNMENT - (uintptr_t)*block % ALIGNMENT) % ALIGNMENT;
 	for (size_t c = 0; c < 4; c++)
 		planes[c] = (unsigned char *)*block + ahead + c * stride;

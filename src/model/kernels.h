@@ -117,6 +117,31 @@ struct kernels {
 	void (*fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows, int wrap_columns,
 	                         float *scratch);
 	void (*fill_smooth)(const struct fill_level *level, int wrap_rows, int wrap_columns, unsigned sweeps, float *scratch);
+
+	/*
+	 * out[r][c] = sum over k < count of in[r][k] matrix[k][c], for `columns` (a multiple of 16) columns. The out rows are
+	 * out_stride >= columns apart.
+	 */
+	void (*cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix, size_t columns,
+	                       float *out, size_t out_stride);
+	/* One level along one axis of n >= 2 rows of `width` values, `stride` apart, coarse rows first; scratch: n * width. */
+	void (*cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch);
+	void (*cdf97_inverse)(float *x, size_t n, size_t stride, size_t width, float *scratch);
+
+	/* out = log2(1 + factor b) where valid, else 0. */
+	void (*default_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out);
+	/* rgb_c = max(0, offset (2^l - 1)) with l = min(40, base[c] + sum over f of rotation[f][c] field_f). */
+	void (*default_values)(const float *const field[3], size_t n, const float base[3], const float rotation[3][3], float offset,
+	                       float *const rgb[3]);
+	/* field_f = sum over c of rotation[f][c] x_c, in place. */
+	void (*default_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
+	/* One row of the fill: every invalid cell becomes the weighted mean of its six neighbours; scratch holds n + 2. */
+	void (*default_smooth)(float *row, const uint8_t *valid, const float *const neighbour[4], size_t n, float *scratch);
+	/*
+	 * out = here times max(0, 1 - threshold_q / energy_q), the energy being the mean square over the 3 x 3 coefficients around
+	 * (rows of n, `here` is rows[4]; NULL where there is none) and, half as much each, the lanes before and after.
+	 */
+	void (*default_shrink)(const float *const rows[9], const float *threshold, size_t n, float *out);
 };
 
 /* The table for this processor. Thread-safe; never NULL. */

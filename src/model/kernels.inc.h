@@ -8,6 +8,8 @@
 #include "paper.inc.h"
 #include "robust.inc.h"
 #include "robust_anchor.inc.h"
+#include "spectrum.inc.h"
+#include "default.inc.h"
 
 const struct kernels KERNEL(kernels) = {
 	.density_row = KERNEL(density_row),
@@ -20,4 +22,12 @@ const struct kernels KERNEL(kernels) = {
 	.robust_anchor = KERNEL(robust_anchor),
 	.robust_scale = KERNEL(robust_scale),
 	.robust_sums = KERNEL(robust_sums),
+	.cosine_product = KERNEL(cosine_product),
+	.cdf97_forward = KERNEL(cdf97_forward),
+	.cdf97_inverse = KERNEL(cdf97_inverse),
+	.default_logs = KERNEL(default_logs),
+	.default_values = KERNEL(default_values),
+	.default_rotate = KERNEL(default_rotate),
+	.default_smooth = KERNEL(default_smooth),
+	.default_shrink = KERNEL(default_shrink),
 };

@@ -1,0 +1,139 @@
+/* default_levels.c: coefficients into planes, and levels out of them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../error.h"
+#include "default_planes.h"
+
+/* Sixteen lanes at once: is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
+static inline int any_above(const float *x, uint32_t least_bits)
+{
+	uint32_t any = 0, bits[16];
+	memcpy(bits, x, sizeof bits);
+	for (int q = 0; q < 16; q++)
+		any |= (uint32_t)((int32_t)(bits[q] & 0x7fffffff) >= (int32_t)least_bits);
+	return any != 0;
+}
+
+struct quantiser {
+	float inverse, rounding;
+	double excess[2];
+	uint64_t count[2];
+	uint32_t largest;
+};
+
+static uint32_t quantise(struct quantiser *q, float coefficient)
+{
+	const float size = fabsf(coefficient) * q->inverse;
+	uint32_t level = (uint32_t)(size + q->rounding);
+	if (level >= 1u << DEFAULT_PLANES_MAX)
+		level = (1u << DEFAULT_PLANES_MAX) - 1;
+	if (level) {
+		q->excess[level > 1] += (double)(size - (float)level);
+		q->count[level > 1]++;
+		q->largest |= level;
+	}
+	return level;
+}
+
+uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding, float centre[2])
+{
+	const uint32_t lanes = p->dims.phi_d, even = (lanes + 1) / 2;
+	struct quantiser q = {.inverse = 1 / step, .rounding = rounding};
+	const float least = (1 - rounding) * step * 0.999f;
+	uint32_t least_bits, planes = 0;
+
+	memcpy(&least_bits, &least, sizeof least_bits);
+	for (int f = 0; f < 3; f++) {
+		memset(p->level[f], 0, (size_t)(lanes + 4) * p->bands.cells * sizeof *p->level[f]);
+		memset(p->top[f], 0, (size_t)(lanes + 4) * p->bands.blocks);
+		for (uint32_t b = 0; b < p->bands.count; b++) {
+			const struct band *band = &p->bands.band[b];
+			for (uint32_t y = 0; y < band->rows; y++)
+				for (uint32_t x = 0; x < band->columns; x++) {
+					const float *row = coefficient[f] + ((size_t)(band->row + y) * p->dims.theta_d + band->column + x) * lanes;
+					const size_t at = band->at + (size_t)y * band->stride + x, own = band->block_at - band->block_stride - 1;
+					const size_t block = band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
+					for (uint32_t lane = 0; lane < lanes; lane++) {
+						if (lane % 16 == 0 && lane + 16 <= lanes && !any_above(row + lane, least_bits)) {
+							lane += 15;
+							continue;
+						}
+						const uint32_t level = quantise(&q, row[lane]);
+						if (!level)
+							continue;
+						const uint32_t harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
+						uint8_t *top = p->top[f] + (size_t)(harmonic + 2) * p->bands.blocks;
+						const uint8_t bits = (uint8_t)(32 - __builtin_clz(level));
+						p->level[f][(size_t)(harmonic + 2) * p->bands.cells + at] = row[lane] < 0 ? -(int32_t)level : (int32_t)level;
+						top[block] = top[block] < bits ? bits : top[block];
+						top[own] = top[own] < bits ? bits : top[own];
+					}
+				}
+		}
+	}
+	while (q.largest >> planes)
+		planes++;
+	for (int s = 0; s < 2; s++)
+		centre[s] = q.count[s] ? (float)(q.excess[s] / (double)q.count[s]) : 0;
+	return planes;
+}
+
+/* Counts the levels of one band of one harmonic and stores the first `room` of them. */
+static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t harmonic, uint32_t lowest, const struct band *band,
+                             struct default_level *out, uint32_t room)
+{
+	const size_t cells = lattice_cells(p->dims), cell0 = (size_t)(harmonic + 2) * p->bands.cells;
+	const uint8_t *active = p->active[field] + (size_t)(harmonic + 2) * p->bands.blocks;
+	uint32_t n = 0;
+
+	if (!active[band->block_at - band->block_stride - 1])
+		return 0;
+	for (uint32_t y = 0; y < band->rows; y++) {
+		const uint8_t *blocks = active + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride;
+		for (uint32_t x = 0; x < band->columns; x++) {
+			const size_t at = cell0 + band->at + (size_t)y * band->stride + x;
+			if (x % BLOCK_EDGE == 0 && !blocks[x / BLOCK_EDGE]) {
+				x += BLOCK_EDGE - 1;
+				continue;
+			}
+			const int32_t size = (int32_t)(p->known[field][at] >> 2 >> lowest << lowest);
+			if (!size)
+				continue;
+			const size_t row = (size_t)(band->row + y) * p->dims.theta_d + band->column + x;
+			if (n < room)
+				out[n] = (struct default_level){
+					.at = (uint32_t)(field * cells + row * p->dims.phi_d + spectrum_lane(p->dims.phi_d, harmonic)),
+					.level = p->sign[field][at] == 2 ? -size : size,
+				};
+			n++;
+		}
+	}
+	return n;
+}
+
+bp_status planes_collect(const struct planes *p, uint32_t end, struct default_level **out, uint32_t *count, bp_error *error)
+{
+	struct default_level *levels = NULL;
+	uint32_t n = 0, room = 0;
+
+	for (uint32_t f = 0; f < 3; f++)
+		for (uint32_t m = 0; m < p->dims.phi_d; m++) {
+			const uint32_t lowest = default_lowest_plane(p->planes, p->dims.phi_d, end, f, m);
+			if (room - n < p->dims.theta_h * p->dims.theta_d) {
+				room = room * 2 + p->dims.theta_h * p->dims.theta_d;
+				struct default_level *larger = realloc(levels, room * sizeof *levels);
+				if (!larger) {
+					free(levels);
+					return error_memory(error, room * sizeof *levels);
+				}
+				levels = larger;
+			}
+			for (uint32_t b = 0; b < p->bands.count; b++)
+				n += band_collect(p, f, m, lowest, &p->bands.band[b], levels + n, room - n);
+		}
+	*out = levels;
+	*count = n;
+	return BP_OK;
+}

@@ -1,0 +1,51 @@
+/*
+ * default_planes.h: the bit planes of the default profile's levels, coded with mixed contexts (FORMAT.md, "Bit planes").
+ *
+ * A unit is one plane of one harmonic of one field. Units must be coded in order from 0: what has been coded is the
+ * context of what follows, in the encoder and in the decoder alike.
+ */
+#ifndef CODEC_DEFAULT_PLANES_H
+#define CODEC_DEFAULT_PLANES_H
+
+#include "../model/default_model.h"
+#include "bit_mixer.h"
+#include "default_bands.h"
+
+struct planes {
+	struct lattice_dims dims;
+	struct bands bands;
+	uint32_t planes;
+	/* Per field, [harmonic][padded plane], with two harmonics of zeros before and behind. */
+	uint32_t *known[3];  /* 4 |level| as far as it is known, with half of the last known plane added */
+	uint8_t *sign[3];    /* 0: the level is 0 so far, 1: positive, 2: negative */
+	uint8_t *active[3];  /* blocks with a level that is not 0; one padding cell is the band's own flag */
+	/* Encoder only: the levels and, per block, the planes that its largest one needs; the same layout. */
+	int32_t *level[3];
+	uint8_t *top[3];
+	struct plane_contexts *contexts;
+	void *block; /* the one allocation behind the arrays */
+};
+
+bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **out, bp_error *error);
+void planes_free(struct planes *planes); /* NULL is allowed */
+
+/* Forgets everything coded; `count` planes, 0..DEFAULT_PLANES_MAX, are to come. */
+void planes_start(struct planes *planes, uint32_t count);
+
+/*
+ * Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign; returns the number of planes.
+ * centre[0], centre[1]: the mean of |coefficient|/step - |level| over levels of 1 and over larger ones.
+ */
+uint32_t planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding, float centre[2]);
+
+static inline uint32_t planes_units(const struct planes *planes)
+{
+	return planes->planes * 3 * planes->dims.phi_d;
+}
+void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
+void planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
+
+/* The levels as units 0..end-1 tell them: malloc'ed, ordered by field, harmonic, band and place. */
+bp_status planes_collect(const struct planes *planes, uint32_t end, struct default_level **out, uint32_t *count, bp_error *error);
+
+#endif

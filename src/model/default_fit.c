@@ -1,0 +1,232 @@
+/*
+ * default_fit.c: a measured lattice becomes the spectra of three fields.
+ *
+ *     logarithms -> fill -> spectrum, per channel -> rotation to the channels' principal axes -> noise drawn towards 0
+ *
+ * and, beside it, the paper's colour regression on the measured achromatic table.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../error.h"
+#include "default_model.h"
+#include "kernels.h"
+#include "robust.h"
+#include "spectrum.h"
+
+void default_free(struct default_model *model)
+{
+	if (!model)
+		return;
+	free(model->coefficient[0]); /* the three are one block */
+	free(model->levels);
+	free(model);
+}
+
+/* 1 for what BRDFs are like, otherwise the power of two above the largest value; 2^980, so that 2^31 units are a double. */
+static double unit_for(double largest)
+{
+	int exponent;
+	if (largest == 0 || (largest >= 0x1p-6 && largest <= 0x1p24))
+		return 1;
+	frexp(largest, &exponent);
+	return ldexp(1, exponent < -1000 ? -1000 : exponent > 980 ? 980 : exponent);
+}
+
+/* Eigenvectors of a symmetric matrix by Jacobi rotations: columns of v. */
+static void eigenvectors(double a[3][3], double v[3][3])
+{
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			v[i][j] = i == j;
+	for (int sweep = 0; sweep < 12; sweep++)
+		for (int p = 0; p < 2; p++)
+			for (int q = p + 1; q < 3; q++) {
+				if (a[p][q] == 0)
+					continue;
+				/* Golub and Van Loan, 8.5: tan, cos and sin without trigonometry. */
+				const double tau = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+				const double t = (tau >= 0 ? 1 : -1) / (fabs(tau) + sqrt(1 + tau * tau)), c = 1 / sqrt(1 + t * t), s = t * c;
+				for (int i = 0; i < 3; i++) {
+					const double x = a[i][p], y = a[i][q];
+					a[i][p] = c * x - s * y;
+					a[i][q] = s * x + c * y;
+				}
+				for (int i = 0; i < 3; i++) {
+					const double x = a[p][i], y = a[q][i];
+					a[p][i] = c * x - s * y;
+					a[q][i] = s * x + c * y;
+				}
+				for (int i = 0; i < 3; i++) {
+					const double x = v[i][p], y = v[i][q];
+					v[i][p] = c * x - s * y;
+					v[i][q] = s * x + c * y;
+				}
+			}
+}
+
+/*
+ * Principal axes of the channels' coefficients, every coefficient with weight 1/(1 + its energy): what counts is the
+ * direction of the many, not the size of the few. Every third row will do.
+ */
+static void rotation_find(float *const channel[3], size_t rows, size_t lanes, float rotation[3][3])
+{
+	double a[3][3] = {{0}}, v[3][3];
+	int order[3] = {0, 1, 2};
+
+	for (size_t r = 1; r < rows; r += 3)
+		for (size_t k = r * lanes; k < (r + 1) * lanes; k++) {
+			const double x = (double)channel[0][k], y = (double)channel[1][k], z = (double)channel[2][k];
+			const double w = 1 / (1 + (x * x + y * y + z * z));
+			a[0][0] += w * x * x;
+			a[0][1] += w * x * y;
+			a[0][2] += w * x * z;
+			a[1][1] += w * y * y;
+			a[1][2] += w * y * z;
+			a[2][2] += w * z * z;
+		}
+	a[1][0] = a[0][1];
+	a[2][0] = a[0][2];
+	a[2][1] = a[1][2];
+	eigenvectors(a, v);
+	for (int i = 0; i < 3; i++)
+		for (int j = i + 1; j < 3; j++)
+			if (a[order[j]][order[j]] > a[order[i]][order[i]]) {
+				int swap = order[i];
+				order[i] = order[j];
+				order[j] = swap;
+			}
+	for (int f = 0; f < 3; f++) {
+		const double sum = v[0][order[f]] + v[1][order[f]] + v[2][order[f]];
+		for (int c = 0; c < 3; c++)
+			rotation[f][c] = (float)(sum < 0 ? -v[c][order[f]] : v[c][order[f]]);
+	}
+}
+
+/*
+ * The paper's regression of each channel on the measured achromatic value. The fields carry colour, so these six numbers are a summary
+ * here: SAMPLE cells, spread evenly over all angles, give them to a fraction of a percent and in a tenth of the time.
+ */
+enum { SAMPLE = 1 << 16 };
+
+static size_t common_divisor(size_t a, size_t b)
+{
+	while (b) {
+		const size_t rest = a % b;
+		a = b;
+		b = rest;
+	}
+	return a;
+}
+
+static bp_status colour_fit(const struct lattice *lattice, struct model *model, bp_error *error)
+{
+	const size_t cells = lattice_cells(lattice->dims), p = lattice->dims.phi_d;
+	size_t every = lattice->valid_count / SAMPLE + 1, n = 0; /* one cell of so many; no common factor: another phi_d in every row */
+	double *x, *y[3];
+	bp_status status = BP_OK;
+
+	while (common_divisor(every, p) != 1)
+		every++;
+	const size_t room = cells / every + 1;
+	x = malloc(room * 4 * sizeof *x);
+	if (!x)
+		return error_memory(error, room * 4 * sizeof *x);
+	for (int c = 0; c < 3; c++)
+		y[c] = x + (size_t)(c + 1) * room;
+	for (size_t i = 0; i < cells; i += every) {
+		/* Within the stride, the first valid cell: where few are valid, none is passed over. */
+		size_t at = i;
+		const size_t last = i + every < cells ? i + every : cells;
+		while (at < last && !lattice->valid[at])
+			at++;
+		if (at == last)
+			continue;
+		for (int c = 0; c < 3; c++)
+			y[c][n] = lattice->rgb[c][at];
+		x[n] = y[0][n] / 3 + y[1][n] / 3 + y[2][n] / 3;
+		n++;
+	}
+	for (int c = 0; !status && c < 3; c++) {
+		struct robust_fit fit;
+		status = robust_fit(x, y[c], n, &fit, error);
+		if (!status)
+			model->colour[c] = (struct colour_fit){.diffuse = fit.intercept, .specular = fit.slope, .iterations = fit.iterations,
+			                                       .converged = fit.converged, .rejected = (double)fit.rejected / (double)n};
+	}
+	free(x);
+	return status;
+}
+
+static double largest_value(const struct lattice *lattice)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	double largest = 0;
+	for (int c = 0; c < 3; c++)
+		for (size_t i = 0; i < cells; i++) {
+			double v = lattice->valid[i] ? lattice->rgb[c][i] : 0;
+			largest = v > largest ? v : largest;
+		}
+	return largest;
+}
+
+/* Takes the valid cells' mean off the whole table and returns it. */
+static float base_remove(float *table, const uint8_t *valid, size_t cells)
+{
+	double sum = 0;
+	size_t count = 0;
+	for (size_t i = 0; i < cells; i++) {
+		sum += valid[i] ? (double)table[i] : 0;
+		count += valid[i];
+	}
+	const float mean = (float)(sum / (double)count);
+	for (size_t i = 0; i < cells; i++)
+		table[i] -= mean;
+	return mean;
+}
+
+bp_status default_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error)
+{
+	const struct kernels *kernels = kernels_get();
+	const struct lattice_dims d = lattice->dims;
+	const size_t cells = lattice_cells(d), rows = (size_t)d.theta_h * d.theta_d;
+	struct default_model *fitted = model->log_density = calloc(1, sizeof *fitted);
+	struct spectrum *spectrum = NULL;
+	bp_status status;
+
+	if (!fitted)
+		return error_memory(error, sizeof *fitted);
+	model->layer_count = 1;
+	fitted->unit = unit_for(largest_value(lattice));
+	fitted->coefficient[0] = malloc(3 * cells * sizeof(float));
+	if (!fitted->coefficient[0])
+		return error_memory(error, 3 * cells * sizeof(float));
+	fitted->coefficient[1] = fitted->coefficient[0] + cells;
+	fitted->coefficient[2] = fitted->coefficient[1] + cells;
+	status = colour_fit(lattice, model, error);
+	if (status)
+		return status;
+	status = spectrum_create(d, &spectrum, error);
+	for (int c = 0; !status && c < 3; c++) {
+		float *table = fitted->coefficient[c];
+		kernels->default_logs(lattice->rgb[c], lattice->valid, cells, 1 / (fitted->unit * (double)DEFAULT_OFFSET), table);
+		status = default_fill(d, lattice->valid, table, error);
+		if (status)
+			break;
+		fitted->base[c] = base_remove(table, lattice->valid, cells);
+		spectrum_forward(spectrum, table);
+	}
+	spectrum_free(spectrum);
+	if (status)
+		return status;
+	rotation_find(fitted->coefficient, rows, d.phi_d, fitted->rotation);
+	for (size_t r = 0; r < rows; r++) {
+		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d, fitted->coefficient[2] + r * d.phi_d};
+		kernels->default_rotate(x, d.phi_d, (const float(*)[3])fitted->rotation);
+	}
+	/* An error bound is a promise about the measured values, their noise included. */
+	for (int f = 0; !status && f < 3 && !(options->max_error > 0); f++)
+		status = default_denoise(d, fitted->coefficient[f], error);
+	return status;
+}

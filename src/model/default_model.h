@@ -1,0 +1,65 @@
+/*
+ * default_model.h: the model of `--profile default`.
+ *
+ * In the logarithm the paper's product of marginals and pair copulas (eq. 7) is a sum, and in the spectrum of
+ * spectrum.h its terms lie apart: harmonic 0 is the (theta_h, theta_d) pair with its marginals, the coarse theta_d
+ * coefficients of the other harmonics are the (theta_h, phi_d) pair, the rest is the conditional pair. Where a pair is
+ * independent its coefficients are 0 and take no room.
+ *
+ *     y_c = log2(1 + b_c / (unit offset))             c = R, G, B; b in 1/sr
+ *     x_f = sum over c of rotation[f][c] (y_c - base_c)   three fields, the first with most of the variation
+ *     coefficients = spectrum of x_f
+ *
+ * The offset is where the logarithm turns linear: below it a relative error is not worth its bytes. It is an absolute
+ * 2^-9 /sr (the error figures have 0.001) for every material whose largest value is a BRDF's, from 2^-6 to 2^24 /sr; for
+ * others the unit moves it along with the largest value.
+ *
+ * A model that was fitted holds coefficients as they were found; one that was decoded holds levels, a coefficient
+ * being about level * step. What lies below the quantiser's step is lost in encoding, where the budget is known.
+ */
+#ifndef MODEL_DEFAULT_MODEL_H
+#define MODEL_DEFAULT_MODEL_H
+
+#include "model.h"
+
+#define DEFAULT_OFFSET 0x1p-9f
+enum { DEFAULT_PLANES_MAX = 24 }; /* |level| < 2^24 */
+
+/* A level that is not 0. */
+struct default_level {
+	uint32_t at;   /* field * cells + place in the spectrum (row, column, lane) */
+	int32_t level;
+};
+
+/*
+ * Order of coding: units (plane, field, harmonic), planes from planes - 1 down to 0, fields 0..2, harmonics 0..P-1; layer l
+ * ends before unit end[l].
+ */
+struct default_model {
+	double unit;          /* a power of two, 1/sr */
+	float base[3];        /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
+	float rotation[3][3]; /* orthonormal */
+	float *coefficient[3]; /* fitted: spectra of the three fields; NULL when decoded */
+
+	float step;            /* decoded, as all that follows */
+	float centre[3];       /* where values of |level| 1 and of larger ones lie beyond it, in steps; and for levels whose last planes are not there, as a share of what is missing */
+	uint32_t planes;
+	uint32_t end[LAYERS_MAX];
+	struct default_level *levels;
+	uint32_t level_count;
+};
+
+bp_status default_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error);
+bp_status default_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+void default_free(struct default_model *model); /* NULL is allowed */
+
+/* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
+uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
+
+/* default_denoise.c: draws coefficients that noise alone would explain towards 0. */
+bp_status default_denoise(struct lattice_dims dims, float *coefficient, bp_error *error);
+
+/* default_fill.c: values for invalid cells of one table [theta_h][theta_d][phi_d] of logarithms. */
+bp_status default_fill(struct lattice_dims dims, const uint8_t *valid, float *table, bp_error *error);
+
+#endif

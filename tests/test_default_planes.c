@@ -1,0 +1,188 @@
+/* default_planes.h and bit_mixer.h: what goes in comes out, whatever it is, and a damaged stream ends. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "codec/default_planes.h"
+
+static uint64_t state = 5;
+static uint32_t random_below(uint32_t n)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return (uint32_t)((state >> 32) * n >> 32);
+}
+
+static void bands_cover_every_coefficient_once(void **unused)
+{
+	static const uint32_t sizes[][2] = {{4, 4}, {15, 15}, {16, 31}, {90, 90}, {4, 1024}, {257, 33}};
+	(void)unused;
+	for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+		const uint32_t h = sizes[s][0], d = sizes[s][1];
+		struct bands bands;
+		uint8_t *seen = calloc(h, d), *padded;
+		bands_lay_out(h, d, &bands);
+		padded = calloc(bands.cells, 1);
+		for (uint32_t b = 0; b < bands.count; b++) {
+			const struct band *band = &bands.band[b];
+			assert_true(band->parent < (int32_t)b);
+			for (uint32_t y = 0; y < band->rows; y++)
+				for (uint32_t x = 0; x < band->columns; x++) {
+					const uint32_t at = band->at + y * band->stride + x;
+					assert_int_equal(seen[(band->row + y) * d + band->column + x]++, 0);
+					assert_true(at >= band->stride + 1 && at + band->stride + 1 < bands.cells);
+					assert_int_equal(padded[at]++, 0);
+				}
+		}
+		for (uint32_t i = 0; i < h * d; i++)
+			assert_int_equal(seen[i], 1);
+		free(seen);
+		free(padded);
+	}
+}
+
+/* Coefficients of many sizes, most of them 0. */
+static void coefficients_make(struct lattice_dims d, uint32_t one_in, float *const field[3])
+{
+	for (int f = 0; f < 3; f++)
+		for (size_t i = 0; i < lattice_cells(d); i++) {
+			const float size = (float)(1u << random_below(16)) * (1 + (float)random_below(1000) / 1000);
+			field[f][i] = random_below(one_in) ? 0 : random_below(2) ? size : -size;
+		}
+}
+
+static void levels_come_back_from_any_prefix_of_units(void **unused)
+{
+	static const struct lattice_dims dims[] = {{4, 4, 4}, {5, 9, 7}, {17, 16, 9}, {33, 30, 12}};
+	(void)unused;
+	for (size_t n = 0; n < sizeof dims / sizeof *dims; n++)
+		for (uint32_t one_in = 2; one_in < 200; one_in *= 8) {
+			const struct lattice_dims d = dims[n];
+			const size_t cells = lattice_cells(d);
+			float *block = malloc(3 * cells * sizeof *block), *const field[3] = {block, block + cells, block + 2 * cells}, centre[2];
+			struct planes *in = NULL, *out = NULL;
+			struct byte_buffer bytes = {0};
+			struct range_encoder encoder;
+			struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
+			struct default_level *levels = NULL;
+			uint32_t count = 0, found = 0;
+
+			coefficients_make(d, one_in, field);
+			assert_int_equal(planes_create(d, 1, &in, NULL), BP_OK);
+			assert_int_equal(planes_create(d, 0, &out, NULL), BP_OK);
+			planes_start(in, planes_quantise(in, field, 1, 0, centre));
+			const uint32_t units = planes_units(in), end = units - units / 5;
+			range_encoder_start(&encoder, &bytes);
+			for (uint32_t u = 0; u < end; u++)
+				planes_encode_unit(in, &coder, u);
+			range_encoder_end(&encoder);
+			planes_start(out, in->planes);
+			range_decoder_start(&coder.decoder, bytes.bytes, bytes.count);
+			for (uint32_t u = 0; u < end; u++)
+				planes_decode_unit(out, &coder, u);
+			assert_true(range_decoder_ended(&coder.decoder));
+			assert_int_equal(planes_collect(out, end, &levels, &count, NULL), BP_OK);
+			for (uint32_t i = 0; i < count; i++) {
+				const uint32_t f = (uint32_t)(levels[i].at / cells), at = (uint32_t)(levels[i].at % cells), lane = at % d.phi_d;
+				const uint32_t even = (d.phi_d + 1) / 2, harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
+				const uint32_t lowest = default_lowest_plane(in->planes, d.phi_d, end, f, harmonic);
+				const int32_t size = (int32_t)((uint32_t)fabsf(field[f][at]) >> lowest << lowest);
+				assert_int_equal(levels[i].level, field[f][at] < 0 ? -size : size);
+				field[f][at] = 0;
+			}
+			/* And nothing is missing: what is left is below its plane. */
+			for (size_t i = 0; i < 3 * cells; i++) {
+				const uint32_t f = (uint32_t)(i / cells), lane = (uint32_t)(i % cells % d.phi_d), even = (d.phi_d + 1) / 2;
+				const uint32_t harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
+				found += (uint32_t)fabsf(block[i]) >> default_lowest_plane(in->planes, d.phi_d, end, f, harmonic) != 0;
+			}
+			assert_int_equal(found, 0);
+			free(levels);
+			byte_buffer_free(&bytes);
+			planes_free(in);
+			planes_free(out);
+			free(block);
+		}
+}
+
+static void the_lowest_plane_is_that_of_the_last_unit_coded(void **unused)
+{
+	const uint32_t planes = 5, harmonics = 7;
+	(void)unused;
+	for (uint32_t end = 0; end <= 3 * planes * harmonics; end++) {
+		uint32_t lowest[3][7];
+		for (uint32_t f = 0; f < 3; f++)
+			for (uint32_t m = 0; m < harmonics; m++)
+				lowest[f][m] = planes;
+		for (uint32_t u = 0; u < end; u++)
+			lowest[u / harmonics % 3][u % harmonics] = planes - 1 - u / (3 * harmonics);
+		for (uint32_t f = 0; f < 3; f++)
+			for (uint32_t m = 0; m < harmonics; m++)
+				assert_int_equal(default_lowest_plane(planes, harmonics, end, f, m), lowest[f][m]);
+	}
+}
+
+static void arbitrary_bytes_decode_to_something_legal(void **unused)
+{
+	const struct lattice_dims d = {17, 16, 9};
+	(void)unused;
+	for (int trial = 0; trial < 20; trial++) {
+		struct planes *planes = NULL;
+		struct default_level *levels = NULL;
+		struct mixed_coder coder = {.tables = mixer_tables_get()};
+		uint8_t bytes[500];
+		uint32_t count;
+		for (size_t i = 0; i < sizeof bytes; i++)
+			bytes[i] = (uint8_t)(trial == 0 ? 0 : trial == 1 ? 255 : random_below(256));
+		assert_int_equal(planes_create(d, 0, &planes, NULL), BP_OK);
+		planes_start(planes, DEFAULT_PLANES_MAX);
+		range_decoder_start(&coder.decoder, bytes, sizeof bytes);
+		for (uint32_t u = 0; u < planes_units(planes); u++)
+			planes_decode_unit(planes, &coder, u);
+		assert_int_equal(planes_collect(planes, planes_units(planes), &levels, &count, NULL), BP_OK);
+		for (uint32_t i = 0; i < count; i++)
+			assert_true(levels[i].level != 0 && abs(levels[i].level) < 1 << DEFAULT_PLANES_MAX && levels[i].at < 3 * lattice_cells(d));
+		free(levels);
+		planes_free(planes);
+	}
+}
+
+static void the_mixer_learns_what_a_bit_depends_on(void **unused)
+{
+	struct byte_buffer bytes = {0};
+	struct range_encoder encoder;
+	struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
+	mixer_context contexts[4][4];
+	struct mixer_weights weights = {{MIXER_WEIGHT_START, MIXER_WEIGHT_START, MIXER_WEIGHT_START, MIXER_WEIGHT_START}};
+	(void)unused;
+	for (int i = 0; i < 16; i++)
+		contexts[i / 4][i % 4] = MIXER_CONTEXT_EVEN;
+	range_encoder_start(&encoder, &bytes);
+	for (int i = 0; i < 20000; i++) {
+		/* The bit is what context 2 says, nineteen times of twenty; the others know nothing. */
+		const uint32_t truth = random_below(2), bit = random_below(20) ? truth : !truth;
+		mixer_context *const context[4] = {&contexts[0][random_below(4)], &contexts[1][random_below(4)], &contexts[2][truth], &contexts[3][0]};
+		mixed_bit(&coder, 0, context, &weights, bit);
+	}
+	range_encoder_end(&encoder);
+	/* The entropy is 0.286 bits each; contexts of 60 bits' memory and four weights cost a little. */
+	assert_true(bytes.count * 8 < 20000 * 0.286 * 1.08);
+	byte_buffer_free(&bytes);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(bands_cover_every_coefficient_once),
+		cmocka_unit_test(levels_come_back_from_any_prefix_of_units),
+		cmocka_unit_test(the_lowest_plane_is_that_of_the_last_unit_coded),
+		cmocka_unit_test(arbitrary_bytes_decode_to_something_legal),
+		cmocka_unit_test(the_mixer_learns_what_a_bit_depends_on),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

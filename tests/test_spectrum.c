@@ -1,0 +1,202 @@
+/* spectrum.h: against sums written out, invertible, for any extents, and alike on every processor. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "model/kernels.h"
+#include "model/spectrum.h"
+
+static uint64_t state = 5;
+static double uniform(void)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return (double)(state >> 11) * 0x1p-53;
+}
+
+static const struct lattice_dims DIMS[] = {{4, 4, 4}, {5, 7, 9}, {15, 16, 5}, {16, 15, 6}, {31, 33, 7}, {29, 18, 33}, {90, 30, 20}, {4, 60, 17}};
+enum { DIMS_COUNT = sizeof DIMS / sizeof *DIMS };
+
+static float *table_random(struct lattice_dims d)
+{
+	float *table = malloc(lattice_cells(d) * sizeof *table);
+	for (size_t i = 0; i < lattice_cells(d); i++)
+		table[i] = (float)(uniform() - 0.5);
+	return table;
+}
+
+/* One level of the 9/7 analysis of a line by its filters (Daubechies and Sweldens 1998, table 2), not by lifting; mirrored ends. */
+static void analysis(double *x, uint32_t n)
+{
+	static const double low[5] = {0.852698679008894, 0.377402855612831, -0.110624404418437, -0.023849465019557, 0.037828455507264};
+	static const double high[4] = {0.788485616405583, -0.418092273221617, -0.040689417609164, 0.064538882628697};
+	double y[1024];
+	for (uint32_t i = 0; i < n; i++) {
+		double sum = 0;
+		for (int k = -4; k <= 4; k++) {
+			int64_t at = (int64_t)i + k;
+			while (at < 0 || at >= n)
+				at = at < 0 ? -at : 2 * ((int64_t)n - 1) - at;
+			const int a = abs(k);
+			sum += x[at] * (i % 2 ? (a < 4 ? high[a] : 0) : low[a]);
+		}
+		y[i % 2 ? (n + 1) / 2 + i / 2 : i / 2] = sum;
+	}
+	memcpy(x, y, n * sizeof *x);
+}
+
+static void slow_forward(struct lattice_dims d, const float *table, double *out)
+{
+	const uint32_t h = d.theta_h, w = d.theta_d, p = d.phi_d;
+	double line[1024];
+	for (size_t r = 0; r < (size_t)h * w; r++)
+		for (uint32_t m = 0; m < p; m++) {
+			double sum = 0;
+			for (uint32_t k = 0; k < p; k++)
+				sum += (double)table[r * p + k] * cos(M_PI * m * (k + 0.5) / p);
+			out[r * p + spectrum_lane(p, m)] = sum * sqrt((m ? 2.0 : 1.0) / p);
+		}
+	uint32_t rows = h, columns = w;
+	for (uint32_t l = 0; l < spectrum_levels(h, w); l++) {
+		for (uint32_t q = 0; q < p; q++) {
+			for (uint32_t y = 0; y < rows; y++) {
+				for (uint32_t x = 0; x < columns; x++)
+					line[x] = out[((size_t)y * w + x) * p + q];
+				analysis(line, columns);
+				for (uint32_t x = 0; x < columns; x++)
+					out[((size_t)y * w + x) * p + q] = line[x];
+			}
+			for (uint32_t x = 0; x < columns; x++) {
+				for (uint32_t y = 0; y < rows; y++)
+					line[y] = out[((size_t)y * w + x) * p + q];
+				analysis(line, rows);
+				for (uint32_t y = 0; y < rows; y++)
+					out[((size_t)y * w + x) * p + q] = line[y];
+			}
+		}
+		rows = (rows + 1) / 2;
+		columns = (columns + 1) / 2;
+	}
+}
+
+static void the_forward_transform_is_the_sum_written_out(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		float *table = table_random(DIMS[n]);
+		double *slow = malloc(lattice_cells(DIMS[n]) * sizeof *slow);
+		struct spectrum *spectrum = NULL;
+		slow_forward(DIMS[n], table, slow);
+		assert_int_equal(spectrum_create(DIMS[n], &spectrum, NULL), BP_OK);
+		spectrum_forward(spectrum, table);
+		for (size_t i = 0; i < lattice_cells(DIMS[n]); i++)
+			assert_true(fabs((double)table[i] - slow[i]) < 1e-5);
+		spectrum_free(spectrum);
+		free(slow);
+		free(table);
+	}
+}
+
+static void the_inverse_gives_the_table_back(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		const struct lattice_dims d = DIMS[n];
+		const size_t slice = (size_t)d.theta_d * d.phi_d;
+		float *table = table_random(d), *copy = malloc(lattice_cells(d) * sizeof *copy), *back = malloc(slice * sizeof *back);
+		struct spectrum *spectrum = NULL;
+		memcpy(copy, table, lattice_cells(d) * sizeof *copy);
+		assert_int_equal(spectrum_create(d, &spectrum, NULL), BP_OK);
+		spectrum_forward(spectrum, table);
+		spectrum_inverse_wavelets(spectrum, table, (d.phi_d + 1) / 2, d.phi_d / 2);
+		for (size_t i = 0; i < d.theta_h; i++) {
+			spectrum_inverse_slice(spectrum, table + i * slice, (d.phi_d + 1) / 2, d.phi_d / 2, back);
+			for (size_t k = 0; k < slice; k++)
+				assert_true(fabsf(back[k] - copy[i * slice + k]) < 3e-6f);
+		}
+		spectrum_free(spectrum);
+		free(back);
+		free(copy);
+		free(table);
+	}
+}
+
+static void lanes_that_are_not_in_use_can_be_left_out(void **unused)
+{
+	const struct lattice_dims d = {30, 31, 24};
+	const size_t slice = (size_t)d.theta_d * d.phi_d;
+	float *few = calloc(lattice_cells(d), sizeof *few), *all = malloc(lattice_cells(d) * sizeof *all);
+	float *a = malloc(slice * sizeof *a), *b = malloc(slice * sizeof *b);
+	struct spectrum *spectrum = NULL;
+	(void)unused;
+	for (size_t r = 0; r < (size_t)d.theta_h * d.theta_d; r++)
+		for (size_t q = 0; q < 3; q++) {
+			few[r * d.phi_d + q] = (float)uniform();
+			if (q < 2)
+				few[r * d.phi_d + 12 + q] = (float)uniform();
+		}
+	memcpy(all, few, lattice_cells(d) * sizeof *all);
+	assert_int_equal(spectrum_create(d, &spectrum, NULL), BP_OK);
+	spectrum_inverse_wavelets(spectrum, few, 3, 2);
+	spectrum_inverse_wavelets(spectrum, all, 12, 12);
+	assert_memory_equal(few, all, lattice_cells(d) * sizeof *all);
+	for (size_t i = 0; i < d.theta_h; i++) {
+		spectrum_inverse_slice(spectrum, few + i * slice, 3, 2, a);
+		spectrum_inverse_slice(spectrum, all + i * slice, 12, 12, b);
+		for (size_t k = 0; k < slice; k++)
+			assert_true(a[k] == b[k]);
+	}
+	spectrum_free(spectrum);
+	free(few);
+	free(all);
+	free(a);
+	free(b);
+}
+
+static void plain_and_avx2_loops_give_the_same_bits(void **unused)
+{
+	enum { N = 45, WIDTH = 37, COLUMNS = 48 };
+	float x[N * WIDTH], y[N * WIDTH], scratch[N * WIDTH], matrix[WIDTH * COLUMNS], p[N * COLUMNS], q[N * COLUMNS];
+	(void)unused;
+	if (!kernels_avx2_usable())
+		skip();
+	for (int i = 0; i < N * WIDTH; i++)
+		x[i] = y[i] = (float)(uniform() - 0.5);
+	for (int i = 0; i < WIDTH * COLUMNS; i++)
+		matrix[i] = (float)(uniform() - 0.5);
+	kernels_plain.cosine_product(x, WIDTH, N, WIDTH, matrix, COLUMNS, p, COLUMNS);
+	kernels_avx2.cosine_product(y, WIDTH, N, WIDTH, matrix, COLUMNS, q, COLUMNS);
+	assert_memory_equal(p, q, sizeof p);
+	kernels_plain.cdf97_forward(x, N, WIDTH, WIDTH, scratch);
+	kernels_avx2.cdf97_forward(y, N, WIDTH, WIDTH, scratch);
+	assert_memory_equal(x, y, sizeof x);
+	kernels_plain.cdf97_inverse(x, N, WIDTH, WIDTH, scratch);
+	kernels_avx2.cdf97_inverse(y, N, WIDTH, WIDTH, scratch);
+	assert_memory_equal(x, y, sizeof x);
+}
+
+static void the_levels_leave_at_least_eight_coarse_cells(void **unused)
+{
+	(void)unused;
+	assert_int_equal(spectrum_levels(90, 90), 3);
+	assert_int_equal(spectrum_levels(14, 1000), 0);
+	assert_int_equal(spectrum_levels(15, 15), 1);
+	assert_int_equal(spectrum_levels(1024, 1024), SPECTRUM_LEVELS_MAX);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(the_forward_transform_is_the_sum_written_out),
+		cmocka_unit_test(the_inverse_gives_the_table_back),
+		cmocka_unit_test(lanes_that_are_not_in_use_can_be_left_out),
+		cmocka_unit_test(plain_and_avx2_loops_give_the_same_bits),
+		cmocka_unit_test(the_levels_leave_at_least_eight_coarse_cells),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
