@@ -340,6 +340,7 @@ int main(int argc, char **argv)
 {
 	static struct run run;
 	const char *output = NULL, *label = NULL, *names = NULL;
+	char temporary[4096];
 	bool quick = false;
 	int workers = 1, option, count;
 	struct row *rows;
@@ -375,9 +376,12 @@ int main(int argc, char **argv)
 		usage(stderr);
 		return 2;
 	}
-	if (output && !(out = fopen(output, "w"))) {
-		fprintf(stderr, "brdfpack-bench: %s: %s\n", output, strerror(errno));
-		return 1;
+	if (output) { /* written beside, renamed when whole */
+		snprintf(temporary, sizeof temporary, "%s.tmp", output);
+		if (!(out = fopen(temporary, "w"))) {
+			fprintf(stderr, "brdfpack-bench: %s: %s\n", temporary, strerror(errno));
+			return 1;
+		}
 	}
 	if (!(run.pairs = malloc(sizeof *run.pairs))) {
 		fprintf(stderr, "brdfpack-bench: out of memory\n");
@@ -388,8 +392,10 @@ int main(int argc, char **argv)
 	head_print(out, argc, argv);
 	print_head(out, &run, label ? label : argv[optind], workers);
 	print_rows(out, &run, rows, count);
-	if (fflush(out) || ferror(out) || (output && fclose(out))) {
+	if (fflush(out) || ferror(out) || (output && (fclose(out) || rename(temporary, output)))) {
 		fprintf(stderr, "brdfpack-bench: %s: %s\n", output ? output : "standard output", strerror(errno));
+		if (output)
+			unlink(temporary);
 		return 1;
 	}
 	free(rows);
