@@ -124,6 +124,38 @@ static struct oracle slow_fit(const double *x, const double *y, size_t n)
 	return out;
 }
 
+/* One iteration from a given line, in long double. */
+static struct oracle slow_step(const double *x, const double *y, size_t n, long double a, long double b)
+{
+	long double *v = malloc(n * sizeof *v), *f = malloc(n * sizeof *f), mean_x = 0, sxx = 0, sw = 0, sx = 0, sy = 0, xx = 0, xy = 0;
+	for (size_t i = 0; i < n; i++)
+		mean_x += x[i] / (long double)n;
+	for (size_t i = 0; i < n; i++)
+		sxx += (x[i] - mean_x) * (x[i] - mean_x);
+	for (size_t i = 0; i < n; i++) {
+		long double h = 1.0L / (long double)n + (x[i] - mean_x) * (x[i] - mean_x) / sxx;
+		f[i] = 1 / sqrtl(1 - (h > 0.9999L ? 0.9999L : h));
+		v[i] = fabsl((y[i] - a - b * x[i]) * f[i]);
+	}
+	qsort(v, n, sizeof *v, ascending);
+	long double s = (v[1 + (n - 2) / 2] + v[1 + (n - 1) / 2]) / 2 / 0.6745L;
+	for (size_t i = 0; i < n; i++) {
+		long double u = (y[i] - a - b * x[i]) * f[i] / (4.685L * s);
+		v[i] = fabsl(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
+		sw += v[i];
+		sx += v[i] * x[i];
+		sy += v[i] * y[i];
+	}
+	for (size_t i = 0; i < n; i++) {
+		xx += v[i] * (x[i] - sx / sw) * (x[i] - sx / sw);
+		xy += v[i] * (x[i] - sx / sw) * (y[i] - sy / sw);
+	}
+	free(v);
+	free(f);
+	struct oracle out = {.slope = (double)(xy / xx), .intercept = (double)(sy / sw - xy / xx * (sx / sw))};
+	return out;
+}
+
 /* Both coefficients within `tolerance` of GSL's, relative to each, or to the size of the terms where a coefficient is 0. */
 static void assert_agrees(const double *x, const double *y, size_t n, double tolerance)
 {
@@ -374,6 +406,30 @@ static void a_large_sample_takes_the_bracketed_median_and_still_agrees_with_gsl(
 	free(y);
 }
 
+/*
+ * The bright few follow a line of another slope than the many, with a gradual change between: plain iterations
+ * creep from one to the other. What comes out must be a fixed point: one more plain iteration leaves it.
+ */
+static void a_creeping_slope_ends_at_a_fixed_point(void **user)
+{
+	(void)user;
+	enum { MANY = 40000 };
+	double *x = malloc(MANY * sizeof *x), *y = malloc(MANY * sizeof *y);
+	state = 1;
+	for (size_t i = 0; i < MANY; i++) {
+		x[i] = exp(2.5 * normal());
+		y[i] = x[i] * (1 + 0.5 * x[i] / (x[i] + 3)) + 0.002 * normal();
+	}
+	struct robust_fit fit;
+	assert_int_equal(robust_fit(x, y, MANY, &fit, NULL), BP_OK);
+	assert_true(fit.converged && fit.iterations < ROBUST_ITERATIONS_MAX);
+	struct oracle next = slow_step(x, y, MANY, fit.intercept, fit.slope);
+	assert_true(fabs(next.intercept - fit.intercept) <= 1e-7 * fabs(fit.intercept));
+	assert_true(fabs(next.slope - fit.slope) <= 1e-7 * fabs(fit.slope));
+	free(x);
+	free(y);
+}
+
 static void both_kernel_tables_give_the_same_bits(void **user)
 {
 	(void)user;
@@ -417,6 +473,7 @@ int main(void)
 		cmocka_unit_test(the_ends_of_the_range_of_double_are_fitted),
 		cmocka_unit_test(the_rejected_share_is_what_the_weights_say),
 		cmocka_unit_test(a_large_sample_takes_the_bracketed_median_and_still_agrees_with_gsl),
+		cmocka_unit_test(a_creeping_slope_ends_at_a_fixed_point),
 		cmocka_unit_test(both_kernel_tables_give_the_same_bits),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,6 +7,7 @@
 #include "../error.h"
 #include "kernels.h"
 #include "robust_iterate.h"
+#include "robust_walk.h"
 
 static const double LEVERAGE_MAX = 0.9999;
 
@@ -27,7 +28,7 @@ static bp_status design_alloc(size_t n, struct design *design, bp_error *error)
 	*design = (struct design){.n = n};
 	design->x = malloc(n * sizeof *design->x);
 	design->excess = malloc(n * sizeof *design->excess);
-	design->inside = malloc((n < 2048 ? 2048 : n + 1) * sizeof *design->inside);
+	design->inside = malloc((n < ROBUST_PICKS ? ROBUST_PICKS : n + 1) * sizeof *design->inside);
 	if (!design->x || !design->excess || !design->inside)
 		return error_memory(error, n * (2 * sizeof(double) + sizeof(float)));
 	/* Few observations are read through as quickly as an anchor is placed. */

@@ -65,33 +65,15 @@ static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct
 		size_t m = sample->n - start < ROBUST_BLOCK ? sample->n - start : ROBUST_BLOCK;
 		const double *x = sample->x + start, *y = sample->y + start;
 		const float *excess = sample->excess + start;
-		double tail[8] = {line->centre_x, line->centre_x, line->centre_x, line->centre_x};
 		lanes4 s0 = zero, s1 = zero, s2 = zero, s3 = zero, s4 = zero, s5 = zero;
+		size_t i = 0;
 
-		for (size_t i = 0; i < m; i += 4) {
-			lanes4 dx, dy, f;
-			mask4 present = {-1, -1, -1, -1};
-			if (m - i >= 4) {
-				dx = LANES_LOAD(x + i) - xo;
-				dy = LANES_LOAD(y + i) - c;
-				f = __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
-			} else { /* the last few: absent ones weigh nothing */
-				f = zero;
-				tail[4] = tail[5] = tail[6] = tail[7] = line->centre_y;
-				for (size_t l = 0; l < 4; l++) {
-					present[l] = l < m - i ? -1 : 0;
-					if (l < m - i) {
-						tail[l] = x[i + l];
-						tail[4 + l] = y[i + l];
-						f[l] = (double)excess[i + l];
-					}
-				}
-				dx = LANES_LOAD(tail) - xo;
-				dy = LANES_LOAD(tail + 4) - c;
-			}
-			lanes4 r = dy - b * dx, u = (r + r * f) * scale, q = one - u * u;
-			mask4 kept = (mask4)(q > zero) & present;
-			rejected += ~kept & present; /* true is -1 */
+		for (; i + 4 <= m; i += 4) {
+			lanes4 dx = LANES_LOAD(x + i) - xo, dy = LANES_LOAD(y + i) - c;
+			lanes4 r = dy - b * dx, f = __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
+			lanes4 u = (r + r * f) * scale, q = one - u * u;
+			mask4 kept = (mask4)(q > zero);
+			rejected += (mask4)(q <= zero); /* true is -1 */
 			q = (lanes4)((mask4)q & kept);
 			lanes4 w = q * q, wx = w * dx;
 			s0 += q;
@@ -100,6 +82,19 @@ static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct
 			s3 += wx * dx;
 			s4 += w * r;
 			s5 += wx * r;
+		}
+		for (int l = 0; i < m; i++, l++) { /* the last few, one lane each */
+			double dx = x[i] - line->centre_x, r = (y[i] - line->centre_y) - line->slope * dx;
+			double u = (r + r * (double)excess[i]) * inverse_scale, q = 1 - u * u;
+			rejected[l] -= q <= 0;
+			q = q > 0 ? q : 0;
+			double w = q * q, wx = w * dx;
+			s0[l] += q;
+			s1[l] += w;
+			s2[l] += wx;
+			s3[l] += wx * dx;
+			s4[l] += w * r;
+			s5[l] += wx * r;
 		}
 		KERNEL(add)(&sum[0], &rest[0], lanes_sum(&s0));
 		KERNEL(add)(&sum[1], &rest[1], lanes_sum(&s1));

@@ -1,232 +1,26 @@
 #include "robust_iterate.h"
 
-#include <float.h>
 #include <math.h>
 
-#include "select.h"
+#include "robust_walk.h"
 
-static const double TUNING = 4.685, MAD_TO_SIGMA = 0.6745;
-
-/* ---- order statistics ---- */
-
-/* The mean of the order statistics k and k2 (k2 = k or k + 1) of v. */
-static double select_middle(double *v, size_t n, size_t k, size_t k2)
-{
-	double a = select_kth(v, n, k);
-	if (k2 == k)
-		return a;
-	double b = v[k2];
-	for (size_t i = k2 + 1; i < n; i++)
-		b = v[i] < b ? v[i] : b;
-	return 0.5 * (a + b);
-}
-
-/* A guess at where the median lies, from 2048 evenly spread observations: about six standard errors of rank wide. */
-static void guess_bracket(const struct robust_sample *sample, const struct robust_line *line, double *scratch, double *low, double *high)
-{
-	enum { PICKS = 2048, MARGIN = 140 };
-	if (sample->n < 4 * PICKS) {
-		*low = 0;
-		*high = DBL_MAX;
-		return;
-	}
-	for (size_t k = 0; k < PICKS; k++) {
-		size_t i = (size_t)((double)k * ((double)sample->n / PICKS));
-		double r = (sample->y[i] - line->centre_y) - line->slope * (sample->x[i] - line->centre_x);
-		scratch[k] = fabs(r + r * (double)sample->excess[i]);
-	}
-	*low = select_kth(scratch, PICKS, PICKS / 2 - MARGIN);
-	*high = select_kth(scratch, PICKS, PICKS / 2 + MARGIN);
-}
-
-/* What one iteration expects of the next. */
-struct expectation {
-	double median, spread; /* the median, and its likely relative change; spread 0: nothing known */
+/* How the steps have gone of late. */
+struct progress {
+	double stride[5]; /* lengths of the last steps, by iteration modulo 5 */
+	unsigned creeps;  /* iterations in a row without progress */
 };
 
 /*
- * The median of |v| over n observations without the smallest: the n - 1 larger values have their middle at ranks
- * 1 + (n-2)/2 and 1 + (n-1)/2 of all. `sample` holds those that are not known to lie below it, `below` of them do.
+ * Do the steps fail to shrink? What converges at a rate of 0.87 or better halves them within five, and is left to itself.
+ * Four failures in a row from the tenth iteration on are a creep.
  */
-static double residual_median(const struct kernels *kernels, const struct robust_sample *sample, const struct robust_line *line,
-                              size_t n, size_t below, double *inside, struct expectation *next)
+static bool is_creeping(struct progress *progress, uint32_t iteration, double stride)
 {
-	const size_t k = 1 + (n - 2) / 2 - below, k2 = 1 + (n - 1) / 2 - below;
-	double low, high, median;
-	size_t less, count;
+	double *before = &progress->stride[iteration % 5];
 
-	if (next->spread > 0 && next->spread < 0.02) {
-		low = next->median * (1 - next->spread);
-		high = next->median * (1 + next->spread);
-	} else {
-		guess_bracket(sample, line, inside, &low, &high);
-	}
-	count = kernels->robust_scale(sample, line, low, high, inside, &less);
-	if (k < less || k2 >= less + count) { /* missed: the same again over the side where it must be */
-		double from = k < less ? 0 : k < less + count ? low : high;
-		double to = k2 < less ? low : k2 < less + count ? high : DBL_MAX;
-		count = kernels->robust_scale(sample, line, from, to, inside, &less);
-	}
-	median = select_middle(inside, count, k - less, k2 - less);
-	/* The change shrinks by a steady excess: twice the last one is a safe guess. */
-	next->spread = next->median > 0 ? fmax(1e-4, 2 * fabs(median / next->median - 1)) : 0;
-	next->median = median;
-	return median;
-}
-
-/* ---- least squares ---- */
-
-/* The power of two that brings a column's absolute sum into [1/2, 1]. */
-static double balance(double absolute_sum)
-{
-	if (!(absolute_sum > 0) || !isfinite(absolute_sum))
-		return 1;
-	int e;
-	double m = frexp(absolute_sum, &e); /* m in [1/2, 1) */
-	return ldexp(1, m == 0.5 ? e - 1 : e);
-}
-
-/*
- * One weighted step from *line, given the sums about it: to the least squares line, or, when the weighted x
- * do not span a line, to the solution of least balanced norm.
- */
-static void line_step(const struct robust_sums *s, struct robust_line *line)
-{
-	const double mean_dx = s->wx / s->w, mean_r = s->wr / s->w;
-	const double sxx = s->wxx - s->wx * mean_dx, sxr = s->wxr - s->wr * mean_dx;
-	const double x = line->centre_x + mean_dx, y = line->centre_y + line->slope * mean_dx + mean_r;
-	const double d0 = balance(s->root), d1 = balance(s->root * fabs(x));
-	/* Squared singular values of the balanced columns. */
-	const double trace = s->w / (d0 * d0) + (sxx + s->w * x * x) / (d1 * d1);
-	const double determinant = (s->w / (d0 * d0)) * (fmax(0, sxx) / (d1 * d1));
-	const double largest = 0.5 * (trace + sqrt(fmax(0, trace * trace - 4 * determinant)));
-
-	line->centre_x = x;
-	line->centre_y = y;
-	if (determinant > DBL_EPSILON * DBL_EPSILON * largest * largest) {
-		line->slope += sxr / sxx;
-	} else {
-		double a0 = 1 / d0, a1 = x / d1;
-		line->slope = y * a1 / (a0 * a0 + a1 * a1) / d1;
-	}
-}
-
-/* ---- the walk ---- */
-
-/* One regression under way. */
-struct walk {
-	const struct kernels *kernels;
-	struct robust_sample sample;
-	double *inside;           /* of the design */
-	double sigma_least;
-	struct robust_line line;  /* where it stands */
-	struct expectation next;
-	struct robust_sums sums;  /* of the last step */
-	struct robust_anchor *anchor;
-	double horizon;           /* steps that the next anchor is meant to serve */
-	uint32_t plain_until;     /* no anchor before this iteration */
-};
-
-/* Ordinary least squares, weights 1: first for the mean of y, then about it. */
-static void walk_start(struct walk *walk)
-{
-	const struct kernels *kernels = walk->kernels;
-	const double *y = walk->sample.y, n = (double)walk->sample.n;
-	double syy = 0, rest = 0;
-
-	kernels->robust_sums(&walk->sample, &walk->line, 0, &walk->sums);
-	walk->line.centre_y += walk->sums.wr / n;
-	for (size_t start = 0; start < walk->sample.n; start += 512) {
-		double part = 0;
-		for (size_t i = start; i < walk->sample.n && i < start + 512; i++)
-			part += (y[i] - walk->line.centre_y) * (y[i] - walk->line.centre_y);
-		double t = syy + part;
-		rest += syy - t + part;
-		syy = t;
-	}
-	walk->sigma_least = 1e-6 * sqrt((syy + rest) / (n - 1));
-	if (!(walk->sigma_least > 0))
-		walk->sigma_least = 1;
-	kernels->robust_sums(&walk->sample, &walk->line, 0, &walk->sums);
-	line_step(&walk->sums, &walk->line);
-}
-
-/* One iteration over all observations. */
-static void step_plain(struct walk *walk)
-{
-	const double median =
-		residual_median(walk->kernels, &walk->sample, &walk->line, walk->sample.n, 0, walk->inside, &walk->next);
-
-	walk->kernels->robust_sums(&walk->sample, &walk->line, 1 / (TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least)),
-	                           &walk->sums);
-	line_step(&walk->sums, &walk->line);
-}
-
-/* The same iteration from the anchor; false, and nothing done, where line or scale are out of its reach. */
-static bool step_anchored(struct walk *walk)
-{
-	const struct robust_anchor *anchor = walk->anchor;
-	const struct robust_sample near = {anchor->near.x, anchor->near.y, anchor->near.excess, anchor->near.count};
-	const size_t n = walk->sample.n, below = anchor->sums.below;
-	struct robust_line line = walk->line;
-	struct expectation next = walk->next;
-
-	/* The ranks of residual_median must lie in the list. */
-	if (!robust_anchor_reaches(anchor, &line) || 1 + (n - 2) / 2 < below || 1 + (n - 1) / 2 >= below + near.n)
-		return false;
-	next.spread = fmax(next.spread, 1e-4); /* a guess from evenly spread picks knows nothing of this list */
-	if (next.spread >= 0.02)
-		return false;
-	const double median = residual_median(walk->kernels, &near, &line, n, below, walk->inside, &next);
-	const double limit = TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least);
-	if (median < anchor->reach.median_low || median > anchor->reach.median_high || limit < anchor->reach.limit_low ||
-	    limit > anchor->reach.limit_high)
-		return false;
-	robust_anchor_sums(anchor, &line, limit, &walk->sums);
-	line_step(&walk->sums, &line);
-	walk->line = line;
-	walk->next = next;
-	return true;
-}
-
-/* Places an anchor where the walk stands, `before` being where it stood one step ago. */
-static bool walk_anchor(struct walk *walk, const struct robust_line *before, uint32_t iteration)
-{
-	const double drop = before->centre_y + before->slope * (walk->line.centre_x - before->centre_x);
-	const double steps = walk->horizon, median = walk->next.median, sway = fmin(0.25, fmax(steps * walk->next.spread, 1e-4));
-	const double limit = TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least);
-	const struct anchor_reach reach = {
-		.centre_y = steps * fabs(walk->line.centre_y - drop),
-		.slope = steps * fabs(walk->line.slope - before->slope),
-		.median_low = median * (1 - sway),
-		.median_high = median * (1 + sway),
-		.limit_low = limit * (1 - sway),
-		.limit_high = limit * (1 + sway),
-	};
-
-	if (robust_anchor_place(walk->anchor, &walk->sample, &walk->line, &reach)) {
-		/* Short lists serve more steps for little more each. */
-		if (20 * (walk->anchor->near.count + walk->anchor->edge.count) < walk->sample.n)
-			walk->horizon *= 2;
-		return true;
-	}
-	walk->horizon *= 0.5;
-	if (walk->horizon < 4) { /* still striding: an anchor would cost more than it saves */
-		walk->horizon = 8;
-		walk->plain_until = iteration + 6;
-	}
-	return false;
-}
-
-/* |a - b| <= tolerance max(|a|, |b|) */
-static bool close_to(double a, double b, double tolerance)
-{
-	return fabs(a - b) <= tolerance * fmax(fabs(a), fabs(b));
-}
-
-static double line_intercept(const struct robust_line *line)
-{
-	return line->centre_y - line->slope * line->centre_x;
+	progress->creeps = iteration >= 7 && stride > 0.5 * *before ? progress->creeps + 1 : 0;
+	*before = stride;
+	return progress->creeps >= 4;
 }
 
 void robust_iterate(struct design *design, const double *y, struct robust_fit *out)
@@ -242,6 +36,7 @@ void robust_iterate(struct design *design, const double *y, struct robust_fit *o
 		.plain_until = ANCHOR_FROM,
 	};
 	struct robust_line before = walk.line;
+	struct progress progress = {{0}, 0};
 
 	walk_start(&walk);
 	design->anchor.placed = false;
@@ -250,23 +45,20 @@ void robust_iterate(struct design *design, const double *y, struct robust_fit *o
 	while (!out->converged && out->iterations < ROBUST_ITERATIONS_MAX) {
 		const struct robust_line from = walk.line;
 
-		if (walk.anchor && !(walk.anchor->placed && step_anchored(&walk))) {
-			walk.anchor->placed = false;
-			if (out->iterations >= walk.plain_until)
-				walk_anchor(&walk, &before, out->iterations);
-			if (!(walk.anchor->placed && step_anchored(&walk)))
-				step_plain(&walk);
-		} else if (!walk.anchor) {
-			step_plain(&walk);
-		}
+		if (walk.anchor && !walk.anchor->placed && out->iterations >= walk.plain_until)
+			walk_anchor(&walk, &before, out->iterations);
+		walk_step(&walk);
 		out->iterations++;
 		before = from;
 
-		const double tolerance = sqrt(DBL_EPSILON), intercept = line_intercept(&walk.line);
-		const double terms = fabs(walk.line.centre_y) + fabs(walk.line.slope * walk.line.centre_x);
-		out->converged = close_to(walk.line.slope, from.slope, tolerance) &&
-		                 (close_to(intercept, line_intercept(&from), tolerance) ||
-		                  fabs(intercept - line_intercept(&from)) <= 8 * DBL_EPSILON * terms);
+		out->converged = line_settled(&from, &walk.line);
+		if (walk.anchor && !out->converged && is_creeping(&progress, out->iterations, fabs(walk.line.slope - from.slope))) {
+			uint32_t used;
+			walk.anchor->placed = false;
+			out->converged = valley_seek(&walk, ROBUST_ITERATIONS_MAX - out->iterations, &used);
+			out->iterations += used;
+			break;
+		}
 	}
 	out->rejected = walk.sums.rejected;
 	out->slope = walk.line.slope;
