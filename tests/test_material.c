@@ -51,6 +51,13 @@ static int archive_make(void **state)
 	return 0;
 }
 
+static bp_status record_bytes_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
+{
+	(void)error;
+	memcpy(bytes, (const uint8_t *)user + offset, count);
+	return BP_OK;
+}
+
 static bp_archive *opened(void)
 {
 	bp_archive *archive = NULL;
@@ -109,6 +116,79 @@ static void a_loaded_material_gives_what_its_decoded_table_gives(void **state)
 	bp_archive_close(archive);
 }
 
+static void a_preview_holds_every_second_corner(void **state)
+{
+	(void)state;
+	const enum profile profiles[] = {PROFILE_PAPER, PROFILE_DEFAULT};
+	for (int p = 0; p < 2; p++) {
+		struct lattice lattice;
+		struct fit_options options = {profiles[p], 60400, 0, 5};
+		struct model *fitted = NULL;
+		struct expansion whole, half;
+		struct lattice_dims dims = {24, 20, 48}, small;
+		struct record_source source = {.bytes = 1};
+		struct record_head head;
+		uint8_t *record = NULL;
+		size_t bytes;
+		bp_error error;
+		assert_int_equal(lattice_alloc(dims, &lattice, NULL), BP_OK);
+		for (uint32_t i = 0; i < dims.theta_h; i++)
+			for (uint32_t j = 0; j < dims.theta_d; j++)
+				for (uint32_t k = 0; k < dims.phi_d; k++)
+					for (int c = 0; c < 3; c++)
+						lattice.rgb[c][lattice_index(dims, i, j, k)] =
+							0.1 * (c + 1) + 3 * exp(-0.02 * i * i) * (1 + 0.01 * j * cos(2 * M_PI * k / dims.phi_d) + 0.02 * c * j);
+		lattice_validate(&lattice);
+		if (record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, &error))
+			fail_msg("%s", error.message);
+		for (uint32_t layers = 1; layers <= head.layer_count; layers++) {
+			if (record_decode(&head, layers, record_bytes_fetch, record, &fitted, &error))
+				fail_msg("%s", error.message);
+			assert_true(model_has_half(dims, &small));
+			assert_int_equal(expansion_alloc(dims, &whole, NULL), BP_OK);
+			assert_int_equal(expansion_alloc(small, &half, NULL), BP_OK);
+			assert_int_equal(model_expand(fitted, 0, &whole, &error), BP_OK);
+			assert_int_equal(model_expand_half(fitted, 0, &half, &error), BP_OK);
+			for (uint32_t i = 0; i < small.theta_h; i++)
+				for (uint32_t j = 0; j < small.theta_d; j++)
+					for (uint32_t k = 0; k < small.phi_d; k++)
+						for (int c = 0; c < 3; c++) {
+							double a = (double)whole.rgb[c][lattice_index(dims, 2 * i, 2 * j, 2 * k)] * whole.unit;
+							double b = (double)half.rgb[c][lattice_index(small, i, j, k)] * half.unit;
+							assert_true(fabs(a - b) <= 1e-4 * a);
+						}
+			assert_int_equal(model_expand_half(fitted, 0, &whole, &error), BP_ERROR_ARGUMENT);
+			expansion_free(&whole);
+			expansion_free(&half);
+			model_free(fitted);
+		}
+		free(record);
+		lattice_free(&lattice);
+	}
+
+	bp_archive *archive = opened(); /* 12 x 10 x 24 */
+	bp_load_options options = {.struct_bytes = sizeof options, .form = BP_FORM_PREVIEW};
+	bp_loaded loaded = {.struct_bytes = sizeof loaded};
+	bp_material *preview = NULL, *whole = NULL;
+	assert_int_equal(bp_material_load(archive, 5, &options, &preview, NULL), BP_OK);
+	assert_int_equal(bp_material_load(archive, 5, NULL, &whole, NULL), BP_OK);
+	assert_int_equal(bp_material_loaded(preview, &loaded, NULL), BP_OK);
+	assert_true(loaded.form == BP_FORM_PREVIEW && loaded.memory_bytes < 6 * 5 * 13 * 6 + 2000);
+	double gap = 0, sum = 0;
+	for (int n = 0; n < 500; n++) {
+		float wi[3], wo[3], a[3], b[3];
+		directions(n, wi, wo);
+		bp_material_evaluate(preview, wi, wo, a);
+		bp_material_evaluate(whole, wi, wo, b);
+		gap += fabs((double)a[1] - (double)b[1]);
+		sum += (double)b[1];
+	}
+	assert_true(gap < 0.2 * sum); /* very coarse here, but the same material */
+	bp_material_free(preview);
+	bp_material_free(whole);
+	bp_archive_close(archive);
+}
+
 static void options_decide_what_is_there_and_it_says_so(void **state)
 {
 	(void)state;
@@ -161,7 +241,7 @@ static void options_out_of_range_are_refused(void **state)
 	bad[0].struct_bytes = 0;
 	bad[1].max_log_rmse = -1e-9;
 	bad[2].max_log_rmse = NAN;
-	bad[3].form = (bp_form)2;
+	bad[3].form = (bp_form)3;
 	bad[4].colour = (bp_colour)7;
 	bad[5].sampling = 2;
 	bad[6].struct_bytes = sizeof good + 8;
@@ -288,6 +368,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_loaded_material_gives_what_its_decoded_table_gives),
+		cmocka_unit_test(a_preview_holds_every_second_corner),
 		cmocka_unit_test(options_decide_what_is_there_and_it_says_so),
 		cmocka_unit_test(options_out_of_range_are_refused),
 		cmocka_unit_test(opening_and_loading_read_little_more_than_the_record),

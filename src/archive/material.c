@@ -13,8 +13,6 @@ struct bp_material {
 	bp_loaded loaded;
 };
 
-_Static_assert((int)BP_FORM_EXPANDED == (int)TABLE_EXPANDED && (int)BP_FORM_COMPACT == (int)TABLE_COMPACT, "forms");
-
 static bp_status options_check(const bp_load_options *options, bp_error *error)
 {
 	if (options->struct_bytes != sizeof *options)
@@ -22,7 +20,7 @@ static bp_status options_check(const bp_load_options *options, bp_error *error)
 		                 options->struct_bytes, sizeof *options);
 	if (!(options->max_log_rmse >= 0))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
-	if (options->form != BP_FORM_EXPANDED && options->form != BP_FORM_COMPACT)
+	if (options->form != BP_FORM_EXPANDED && options->form != BP_FORM_COMPACT && options->form != BP_FORM_PREVIEW)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no memory form %d", (int)options->form);
 	if (options->colour != BP_COLOUR_RGB && options->colour != BP_COLOUR_MEAN)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no colour option %d", (int)options->colour);
@@ -62,15 +60,19 @@ static uint32_t bytes_to_read(const struct record_head *head, uint32_t layers)
 static bp_status material_build(const struct model *model, const bp_load_options *options, bp_material *material, bp_error *error)
 {
 	struct expansion expansion;
-	bp_status status = expansion_alloc(model->dims, &expansion, error);
+	struct lattice_dims half;
+	const bool preview = options->form == BP_FORM_PREVIEW && model_has_half(model->dims, &half);
+	bp_status status = expansion_alloc(preview ? half : model->dims, &expansion, error);
 	if (status)
 		return status;
-	status = model_expand(model, 0, &expansion, error);
+	status = (preview ? model_expand_half : model_expand)(model, 0, &expansion, error);
 	if (!status)
-		status = table_build(&expansion, (enum table_form)options->form, options->colour == BP_COLOUR_RGB ? 3 : 1, &material->table, error);
+		status = table_build(&expansion, options->form == BP_FORM_COMPACT ? TABLE_COMPACT : TABLE_EXPANDED,
+		                     options->colour == BP_COLOUR_RGB ? 3 : 1, &material->table, error);
 	expansion_free(&expansion);
 	if (!status && options->sampling)
 		status = sampler_build(material->table, &material->sampler, error);
+	material->loaded.form = options->form == BP_FORM_PREVIEW && !preview ? BP_FORM_EXPANDED : options->form;
 	return status;
 }
 
@@ -114,7 +116,7 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 		.log_rmse = head.layers[layers - 1].fidelity.log_rmse,
 		.read_bytes = bytes_to_read(&head, layers),
 		.memory_bytes = sizeof *material + table_bytes(material->table) + (material->sampler ? sampler_bytes(material->sampler) : 0),
-		.form = options->form,
+		.form = material->loaded.form,
 		.colour = options->colour,
 		.sampling = options->sampling,
 	};

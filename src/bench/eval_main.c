@@ -41,7 +41,7 @@ static const struct {
 	[LOAD_EXPANDED] = {"load, all layers, expanded", "ms", "cached read", READ_CACHED, 1e3},
 	[LOAD_COMPACT] = {"load, all layers, compact", "ms", "cached read", READ_CACHED, 1e3},
 	[LOAD_SAMPLING] = {"load, all layers, expanded, with sampling", "ms", "cached read", READ_CACHED, 1e3},
-	[LOAD_PREVIEW] = {"load, first layer, expanded", "ms", "all layers", LOAD_EXPANDED, 1e3},
+	[LOAD_PREVIEW] = {"load, first layer, preview", "ms", "all layers", LOAD_EXPANDED, 1e3},
 	[RAW_LIBM] = {"nearest look-up in the raw table, acos and atan2", "ns", NULL, 0, 1e9},
 	[RAW_OURS] = {"nearest look-up in the raw table, our angles", "ns", NULL, 0, 1e9},
 	[ONE_EXPANDED] = {"evaluate one, interpolated, expanded", "ns", "raw, our angles", RAW_OURS, 1e9},
@@ -176,7 +176,7 @@ static void loads_time(const bp_archive *archive, uint64_t index, const bp_mater
 	bp_material_free(material);
 	if (material)
 		note(all, LOAD_SAMPLING, seconds);
-	material = info->layer_count > 1 ? load(archive, index, BP_FORM_EXPANDED, 0, first, &seconds) : NULL;
+	material = info->layer_count > 1 ? load(archive, index, BP_FORM_PREVIEW, 0, first, &seconds) : NULL;
 	bp_material_free(material);
 	if (material)
 		note(all, LOAD_PREVIEW, seconds);

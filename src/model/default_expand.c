@@ -13,29 +13,43 @@ uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end,
 	return end > first ? planes - 1 - (end - 1 - first) / period : planes;
 }
 
+float default_level_value(const struct default_model *model, struct lattice_dims d, uint32_t layers, const struct default_level *level,
+                          struct default_place *place)
+{
+	const size_t cells = lattice_cells(d);
+	const uint32_t even = (d.phi_d + 1) / 2, lane = (uint32_t)(level->at % cells) % d.phi_d;
+
+	place->field = (uint32_t)(level->at / cells);
+	place->row = (uint32_t)(level->at % cells) / d.phi_d;
+	place->kind = lane >= even;
+	place->order = place->kind ? lane - even : lane;
+	const uint32_t harmonic = 2 * place->order + place->kind;
+	const uint32_t lowest = default_lowest_plane(model->planes, d.phi_d, model->end[layers - 1], place->field, harmonic);
+	const uint32_t magnitude = (uint32_t)(level->level < 0 ? -level->level : level->level) >> lowest << lowest;
+	float value;
+
+	if (!magnitude)
+		return 0;
+	if (lowest)
+		value = (float)magnitude + model->centre[2] * (float)(1u << lowest);
+	else
+		value = (float)magnitude + model->centre[magnitude > 1];
+	value *= model->step;
+	return level->level < 0 ? -value : value;
+}
+
 /* Puts the levels, as far as the layers hold them, into the zeroed spectra; notes how many lanes of either kind are in use. */
 static void levels_place(const struct default_model *model, struct lattice_dims d, uint32_t layers, float *const field[3], uint32_t used[2])
 {
 	const size_t cells = lattice_cells(d);
-	const uint32_t even = (d.phi_d + 1) / 2;
 
 	for (uint32_t i = 0; i < model->level_count; i++) {
-		const uint32_t f = (uint32_t)(model->levels[i].at / cells), at = (uint32_t)(model->levels[i].at % cells), lane = at % d.phi_d;
-		const uint32_t kind = lane >= even, place = kind ? lane - even : lane, harmonic = 2 * place + kind;
-		const uint32_t lowest = default_lowest_plane(model->planes, d.phi_d, model->end[layers - 1], f, harmonic);
-		const int32_t level = model->levels[i].level;
-		const uint32_t magnitude = (uint32_t)(level < 0 ? -level : level) >> lowest << lowest;
-		float value;
-
-		if (!magnitude)
+		struct default_place place;
+		const float value = default_level_value(model, d, layers, &model->levels[i], &place);
+		if (value == 0)
 			continue;
-		if (lowest)
-			value = (float)magnitude + model->centre[2] * (float)(1u << lowest);
-		else
-			value = (float)magnitude + model->centre[magnitude > 1];
-		value *= model->step;
-		field[f][at] = level < 0 ? -value : value;
-		used[kind] = place + 1 > used[kind] ? place + 1 : used[kind];
+		field[place.field][model->levels[i].at % cells] = value;
+		used[place.kind] = place.order + 1 > used[place.kind] ? place.order + 1 : used[place.kind];
 	}
 }
 

@@ -51,10 +51,21 @@ struct default_model {
 
 bp_status default_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error);
 bp_status default_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+/* Every second corner along each axis (extents even); *out has half the model's extents. Decoded models only. */
+bp_status default_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
 void default_free(struct default_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
 uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
+
+/* Where a level stands: the field, the row theta_h * D + theta_d of its spectrum, and harmonic 2 order + kind. */
+struct default_place {
+	uint32_t field, row, kind, order;
+};
+
+/* The coefficient that a level stands for when only `layers` layers are there; 0 when they do not hold it. */
+float default_level_value(const struct default_model *model, struct lattice_dims dims, uint32_t layers,
+                          const struct default_level *level, struct default_place *place);
 
 /* default_denoise.c: draws coefficients that noise alone would explain towards 0. */
 bp_status default_denoise(struct lattice_dims dims, float *coefficient, bp_error *error);

@@ -56,4 +56,11 @@ void model_free(struct model *model); /* NULL is allowed */
 /* Expands layers 0..layers-1 (0: all that are there) over the whole lattice. The caller has allocated *out with the model's dims. */
 bp_status model_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
 
+/*
+ * Every second corner of the lattice along each axis, for a preview: corner i of H/2 is corner 2 i of H. The model's extents
+ * must be even and at least 8; *out has been allocated with half of them. BP_ERROR_ARGUMENT otherwise.
+ */
+bp_status model_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+bool model_has_half(struct lattice_dims dims, struct lattice_dims *half); /* sets *half where there is one */
+
 #endif

@@ -30,8 +30,8 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
 	return levels;
 }
 
-/* cos(pi a / (2 P)), from the first quadrant only, so that equal angles give equal values. */
-static double cosine_of(uint64_t a, uint32_t p)
+/* From the first quadrant only, so that equal angles give equal values. */
+double spectrum_cosine(uint64_t a, uint32_t p)
 {
 	double c, s;
 	a %= 4 * (uint64_t)p;
@@ -53,7 +53,7 @@ static void tables_fill(struct spectrum *t)
 		const size_t columns = m % 2 ? t->odd_columns : t->even_columns, cells = m % 2 ? t->odd : t->even;
 		for (uint32_t k = 0; k < cells; k++) {
 			/* The cell in the middle of an odd row is its own mirror image; the fold below does not double it. */
-			float value = (float)(scale * cosine_of((uint64_t)m * (2 * k + 1), p));
+			float value = (float)(scale * spectrum_cosine((uint64_t)m * (2 * k + 1), p));
 			to[k * columns + m / 2] = value;
 			from[m / 2 * columns + k] = value;
 		}
