@@ -30,7 +30,7 @@ static void progress_update(const struct build *build)
 {
 	uint64_t done = build->totals.packed + build->totals.refused;
 	if (build->sources.stream_count == 0)
-		progress_show(done, build->items.count, (double)build->bytes_done / (double)build->bytes_total);
+		progress_show(done, build->items.count, build->bytes_total > 0 ? (double)build->bytes_done / (double)build->bytes_total : 0);
 	else if (build->manifest.count > 0)
 		progress_show(done, build->manifest.count, (double)done / (double)build->manifest.count);
 	else
@@ -53,7 +53,7 @@ static void outcomes_report(struct build *build)
 	}
 }
 
-/* Checks a record that a worker made and stores it in the spool. */
+/* Checks a record that a worker made, and the file it was made from against the manifest. */
 static bp_status record_accept(struct build *build, struct item *item, const struct job_result *result,
                                struct record_head *head, bp_error *error)
 {
