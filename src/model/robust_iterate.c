@@ -25,7 +25,7 @@ static bool is_creeping(struct progress *progress, uint32_t iteration, double st
 
 void robust_iterate(struct design *design, const double *y, struct robust_fit *out)
 {
-	enum { ANCHOR_FROM = 6 };
+	enum { ANCHOR_FROM = 12 };
 	struct walk walk = {
 		.kernels = kernels_get(),
 		.sample = {design->x, y, design->excess, design->n},

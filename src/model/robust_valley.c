@@ -11,7 +11,7 @@
 
 #include "robust_walk.h"
 
-static const double GROWTH = 3;
+static const double GROWTH = 4;
 
 struct valley {
 	double origin;                   /* x */
@@ -102,7 +102,7 @@ bool valley_seek(struct walk *walk, uint32_t evaluations, uint32_t *used)
 			drift = walk->line.slope - valley.t;
 			rise = walk->line.centre_y + walk->line.slope * (valley.origin - walk->line.centre_x) - valley.v;
 			/* Before the zero is bracketed roughly, then well below the drift. */
-			const double rough = 0.01 * walk->next.median, fine = 0.2 * fabs(drift) * x_spread(&walk->sums);
+			const double rough = 0.01 * walk->next.median, fine = 0.5 * fabs(drift) * x_spread(&walk->sums);
 			if (fabs(rise) <= (is_bracketed(&valley) ? fmin(rough, fine) : rough))
 				settle = 4;
 			double gain = settle && settle < 4 ? step / (before - rise) : 1;

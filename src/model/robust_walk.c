@@ -21,10 +21,10 @@ static double select_middle(double *v, size_t n, size_t k, size_t k2)
 	return 0.5 * (a + b);
 }
 
-/* A guess at where the median lies, from ROBUST_PICKS evenly spread observations: seven standard errors of rank wide, 4 % of them. */
+/* A guess at where the median lies, from ROBUST_PICKS evenly spread observations: four standard errors of rank wide, 2.5 % of them. */
 static void guess_bracket(const struct robust_sample *sample, const struct robust_line *line, double *scratch, double *low, double *high)
 {
-	enum { PICKS = ROBUST_PICKS, MARGIN = 160 };
+	enum { PICKS = ROBUST_PICKS, MARGIN = 100 };
 	if (sample->n < 4 * PICKS) {
 		*low = 0;
 		*high = DBL_MAX;
