@@ -7,15 +7,13 @@ reader=$here/../scripts/read_bpk.py
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
-"$tool" synth --lattice 12x10x16 in
+"$tool" synth --lattice 12x10x16 all
+mkdir in # the reader is slow: four materials of very different kinds, and the small odd ones
+for name in silvered-mirror mother-of-pearl wine-velvet terracotta; do mv all/$name.binary in; done
 python3 "$here/cli/fixtures.py" in
 rm in/truncated.binary in/trailing.binary in/header.binary in/extents.binary in/empty.binary in/unmeasured.binary
 for profile in paper default; do
-	if ! "$tool" build -q --any-lattice --profile $profile -o $profile.bpk in 2>errors; then
-		grep -qE 'there is no profile|profile [0-9]* is not known' errors && continue # not in this library
-		cat errors
-		exit 1
-	fi
+	"$tool" build -q --any-lattice --profile $profile -o $profile.bpk in
 	"$tool" extract -C $profile $profile.bpk
 	python3 "$reader" verify $profile.bpk
 	python3 "$here/python_compare.py" "$reader" $profile.bpk $profile

@@ -4,13 +4,8 @@
 #include <stdlib.h>
 
 #include "../error.h"
-#include "paper.h"
-#if __has_include("default_model.h")
 #include "default_model.h"
-#define HAVE_DEFAULT 1
-#else
-#define HAVE_DEFAULT 0
-#endif
+#include "paper.h"
 
 bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error)
 {
@@ -32,11 +27,9 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 	case PROFILE_PAPER:
 		status = paper_fit(lattice, options, model, error);
 		break;
-#if HAVE_DEFAULT
 	case PROFILE_DEFAULT:
 		status = default_fit(lattice, options, model, error);
 		break;
-#endif
 	default:
 		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
 	}
@@ -52,9 +45,7 @@ void model_free(struct model *model)
 	if (!model)
 		return;
 	paper_free(model->paper);
-#if HAVE_DEFAULT
 	default_free(model->log_density);
-#endif
 	free(model);
 }
 
@@ -70,10 +61,8 @@ bp_status model_expand(const struct model *model, uint32_t layers, struct expans
 	switch (model->profile) {
 	case PROFILE_PAPER:
 		return paper_expand(model, layers, out, error);
-#if HAVE_DEFAULT
 	case PROFILE_DEFAULT:
 		return default_expand(model, layers, out, error);
-#endif
 	default:
 		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)model->profile);
 	}

@@ -51,6 +51,8 @@ static const char *section_name(unsigned type)
 	case SECTION_PAIR_HD: return "c_hd";
 	case SECTION_PAIR_HPHI: return "c_hphi";
 	case SECTION_SLICES: return "c_dphi|h";
+	case SECTION_FIELDS: return "fields";
+	case SECTION_PLANES: return "bit planes";
 	default: return "other";
 	}
 }
