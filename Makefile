@@ -64,6 +64,7 @@ help:
 	@echo "  bench-build  the first half of it; bench-methods: the second, $(BUILD)/bench/bench-methods.tsv, .svg"
 	@echo "  bench-eval   load, evaluate and sample beside the raw table"
 	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
+	@echo "  stress       hundreds of adversarial materials: one table of what holds (a few minutes)"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  clean        removes $(BUILD)/"
@@ -142,6 +143,15 @@ check-symbols: all
 	$(Q)nm -g --defined-only $(BUILD)/libbrdfpack.a | awk 'NF == 3 && $$3 !~ /^bp_/ {print "libbrdfpack.a exports " $$3; bad = 1} END {exit bad}'
 	$(Q)nm -D --defined-only $(BUILD)/$(SHARED) | awk '$$3 !~ /^bp_/ {print "$(SHARED) exports " $$3; bad = 1} END {exit bad}'
 
+# Adversarial materials (tests/stress.c). `make stress STRESS_FLAGS="-s 1"` is the short form.
+STRESS_FLAGS ?= -s 5 -m
+STRESS_O     := $(addprefix $(BUILD)/tests/,stress.o stress_cases.o stress_reference.o stress_subject.o)
+$(BUILD)/tests/stress: $(STRESS_O) $(BUILD)/internal.a
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lgsl -lgslcblas $(LIBRARY_LIBS)
+stress: $(BUILD)/tests/stress
+	$(Q)$< $(STRESS_FLAGS)
+
 # Run time against error: `make bench BENCH_DATA=FOLDER BENCH_LABEL="what it is"`; without BENCH_DATA the demo set.
 BENCH_OUT    ?= $(BUILD)/bench
 BENCH_LABEL  ?= $(if $(BENCH_DATA),MERL files in $(BENCH_DATA),demo set of brdfpack synth)
@@ -203,5 +213,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval install uninstall clean FORCE
+.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval stress install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -10,12 +10,13 @@
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
 #     clang     builds everything by clang with warnings as errors
 #     valgrind  a small build, list, extract and verify under valgrind
+#     stress    adversarial materials through every profile (the short form of `make stress`)
 #
 # Without a JOB: all of them. The last line is "N passed, M failed"; the exit code is 1 when M > 0.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
-all_jobs="unit cli install python asan clang valgrind"
+all_jobs="unit cli install python asan clang valgrind stress"
 jobs=${*:-$all_jobs}
 logs=build/logs
 passed=0
@@ -112,6 +113,10 @@ job_python() {
 	check "python reader, demo set" "$logs/python-demo.log" tests/python.sh build/test
 }
 job_valgrind() { build test CFLAGS="-O3 -g -Werror" && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }
+job_stress() {
+	build test CFLAGS="-O3 -g -Werror" || return
+	check "stress" "$logs/stress.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" STRESS_FLAGS="-g 3 -v" stress
+}
 
 for job in $jobs; do
 	before=$passed

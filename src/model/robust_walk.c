@@ -88,12 +88,21 @@ static double balance(double absolute_sum)
 static void line_step(const struct robust_sums *s, struct robust_line *line)
 {
 	const double mean_dx = s->wx / s->w, mean_r = s->wr / s->w;
-	const double sxx = s->wxx - s->wx * mean_dx, sxr = s->wxr - s->wr * mean_dx;
-	const double x = line->centre_x + mean_dx, y = line->centre_y + line->slope * mean_dx + mean_r;
+	const double sxr = s->wxr - s->wr * mean_dx, y = line->centre_y + line->slope * mean_dx + mean_r;
+	double sxx = s->wxx - s->wx * mean_dx, x = line->centre_x + mean_dx;
+
+	/*
+	 * What is left of a cancellation is noise: where the weighted x are constant it must count as 0, or the slope grows
+	 * without bound. True values this small are seen in the next step, about the new centre.
+	 */
+	if (sxx <= 16 * DBL_EPSILON * s->wxx)
+		sxx = 0;
+	if (fabs(x) <= 16 * DBL_EPSILON * fabs(mean_dx))
+		x = 0;
 	const double d0 = balance(s->root), d1 = balance(s->root * fabs(x));
 	/* Squared singular values of the balanced columns. */
 	const double trace = s->w / (d0 * d0) + (sxx + s->w * x * x) / (d1 * d1);
-	const double determinant = (s->w / (d0 * d0)) * (fmax(0, sxx) / (d1 * d1));
+	const double determinant = (s->w / (d0 * d0)) * (sxx / (d1 * d1));
 	const double largest = 0.5 * (trace + sqrt(fmax(0, trace * trace - 4 * determinant)));
 
 	line->centre_x = x;
