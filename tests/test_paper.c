@@ -138,9 +138,7 @@ static void a_merl_size_material_is_fitted_well(void **user)
 	struct fidelity f = fit_and_measure(&l, &model, &table), first;
 	assert_int_equal(model_expand(model, 1, &table, NULL), BP_OK);
 	assert_int_equal(fidelity_measure(&l, &table, &first, NULL), BP_OK);
-	if (!(f.log_rmse < 0.08))
-		print_message("log RMSE %g, first layer %g\n", f.log_rmse, first.log_rmse);
-	assert_true(f.log_rmse < 0.3);
+	assert_true(f.log_rmse < 0.3); /* the diffuse part alone goes down to 0.002 at grazing, where its shape is lost */
 	assert_true(f.log_rmse < first.log_rmse);
 	assert_int_equal(model->paper->hd.count, 506);
 	assert_true(model->paper->hphi.count <= 1012);
