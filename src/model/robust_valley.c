@@ -76,6 +76,18 @@ static double x_spread(const struct robust_sums *s)
 	return sqrt(fmax(0, s->wxx / s->w - (s->wx / s->w) * (s->wx / s->w)));
 }
 
+/*
+ * The step with 7 significant bits in terms of the unit. The search magnifies rounding errors; steps rounded so keep it
+ * from telling a material from the same in another unit of measure.
+ */
+static double step_round(double step, double unit)
+{
+	int e;
+	const double m = frexp(step / unit, &e);
+
+	return isfinite(m) && unit > 0 ? ldexp(rint(m * 128), e - 7) * unit : step;
+}
+
 bool valley_seek(struct walk *walk, uint32_t evaluations, uint32_t *used)
 {
 	struct valley valley = {
@@ -84,6 +96,7 @@ bool valley_seek(struct walk *walk, uint32_t evaluations, uint32_t *used)
 		.v = walk->line.centre_y,
 	};
 	double last_t = 0, last_v = 0;
+	const double level_unit = walk->next.median, slope_unit = level_unit / x_spread(&walk->sums);
 	bool settled_once = false, anchored = false;
 
 	*used = 0;
@@ -106,7 +119,7 @@ bool valley_seek(struct walk *walk, uint32_t evaluations, uint32_t *used)
 			if (fabs(rise) <= (is_bracketed(&valley) ? fmin(rough, fine) : rough))
 				settle = 4;
 			double gain = settle && settle < 4 ? step / (before - rise) : 1;
-			step = rise * (gain > 0.25 && gain < 4 ? gain : 1);
+			step = step_round(rise * (gain > 0.25 && gain < 4 ? gain : 1), level_unit);
 			valley.v += step;
 		}
 		if (settled_once && valley.t != last_t)
@@ -114,8 +127,8 @@ bool valley_seek(struct walk *walk, uint32_t evaluations, uint32_t *used)
 		last_t = valley.t;
 		last_v = valley.v;
 		settled_once = true;
-		valley.t = valley_next(&valley, drift);
-		valley.v += valley.tangent * (valley.t - last_t);
+		valley.t += step_round(valley_next(&valley, drift) - valley.t, slope_unit);
+		valley.v += step_round(valley.tangent * (valley.t - last_t), level_unit);
 		const bool narrow = is_bracketed(&valley) && fabs(valley.high - valley.low) * x_spread(&walk->sums) < 0.5 * walk->next.median;
 		if (narrow && walk->anchor && !anchored) {
 			valley_anchor(walk, &valley);
