@@ -99,8 +99,8 @@ static bp_status encode_once(struct encoding *e, bp_error *error)
 }
 
 /*
- * A first guess at the step, from how many coefficients have which size: a level costs about 4.3 bits to place, with its
- * sign, and one more for every bit below its highest. A third of the rows is looked at.
+ * A first guess at the step, from how many coefficients have which size: a level costs about 3.4 bits to place, with its
+ * sign, and one more for every bit below its highest; 4 where noise has scattered them. A third of the rows is looked at.
  */
 static float step_guess(const struct default_model *model, struct lattice_dims d, double bytes, float least)
 {
@@ -123,7 +123,7 @@ static float step_guess(const struct default_model *model, struct lattice_dims d
 	while (bin > 0 && bits < bytes * 8) {
 		finer += count / PER_OCTAVE;
 		count += bins[bin--] * 3.0;
-		bits = count * 4.3 + finer;
+		bits = count * (model->noisy ? 4.0 : 3.4) + finer;
 	}
 	free(bins);
 	const uint32_t edge = (uint32_t)(bin + 1) << 20;
@@ -137,11 +137,11 @@ static float step_guess(const struct default_model *model, struct lattice_dims d
 static bp_status step_search(struct encoding *e, struct lattice_dims d, int effort, bp_error *error)
 {
 	const uint32_t limit = e->limit[e->layers - 1];
-	const double high = effort <= 2 ? 1.25 : effort <= 4 ? 1.12 : 1.06, aim = effort <= 4 ? 1.03 : 1.02;
+	const double high = effort <= 2 ? 1.25 : effort <= 4 ? 1.1 : effort <= 6 ? 1.04 : 1.012, aim = effort <= 2 ? 1.1 : effort <= 4 ? 1.03 : 1.004;
 	const int attempts = effort <= 2 ? 3 : effort <= 6 ? 5 : 8;
 	const size_t cells = lattice_cells(d);
 	float largest = 0, least, fitting = 0;
-	double slope = 0.9, last_ratio = 0, last_step = 0;
+	double slope = 0.78, /* what surrogates need: 0.66 to 0.92 */ last_ratio = 0, last_step = 0;
 	bp_status status = BP_OK;
 
 	for (int f = 0; f < 3; f++)
@@ -156,7 +156,7 @@ static bp_status step_search(struct encoding *e, struct lattice_dims d, int effo
 		if (status)
 			return status;
 		const double ratio = (double)e->wanted / limit, step = (double)e->step;
-		if ((ratio >= 0.995 && ratio <= high) || (ratio < 1 && e->step <= least))
+		if ((ratio >= 0.991 && ratio <= high) || (ratio < 1 && e->step <= least))
 			return BP_OK;
 		if (last_ratio > 0 && fabs(fast_log2(step / last_step)) > 1e-4) {
 			slope = -fast_log2(ratio / last_ratio) / fast_log2(step / last_step);
@@ -164,7 +164,7 @@ static bp_status step_search(struct encoding *e, struct lattice_dims d, int effo
 		}
 		last_ratio = ratio;
 		last_step = step;
-		if (ratio >= 0.995 && (fitting == 0 || e->step > fitting))
+		if (ratio >= 0.991 && (fitting == 0 || e->step > fitting))
 			fitting = e->step; /* the coarsest step that fills the record */
 		if (attempt + 1 < attempts)
 			e->step = fmaxf((float)(step * fast_exp2(fmin(fmax(fast_log2(ratio / aim) / slope, -4), 4))), least);

@@ -85,7 +85,7 @@ static void band_shrink(struct lattice_dims d, const float *c, struct rectangle 
 	}
 }
 
-bp_status default_denoise(struct lattice_dims d, float *coefficient, bp_error *error)
+bp_status default_denoise(struct lattice_dims d, float *coefficient, bool *noisy, bp_error *error)
 {
 	const size_t cells = lattice_cells(d);
 	struct noise noise = {calloc(d.theta_d, sizeof(float)), calloc(d.phi_d, sizeof(float))};
@@ -123,6 +123,7 @@ bp_status default_denoise(struct lattice_dims d, float *coefficient, bp_error *e
 	for (uint32_t y = 0; y < rows; y++)
 		memcpy(out + (size_t)y * d.theta_d * d.phi_d, coefficient + (size_t)y * d.theta_d * d.phi_d, (size_t)columns * d.phi_d * sizeof *out);
 	memcpy(coefficient, out, cells * sizeof *out);
+	*noisy = true;
 out:
 	free(out);
 	free(threshold);

@@ -227,6 +227,6 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 	}
 	/* An error bound is a promise about the measured values, their noise included. */
 	for (int f = 0; !status && f < 3 && !(options->max_error > 0); f++)
-		status = default_denoise(d, fitted->coefficient[f], error);
+		status = default_denoise(d, fitted->coefficient[f], &fitted->noisy, error);
 	return status;
 }

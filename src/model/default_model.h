@@ -40,6 +40,7 @@ struct default_model {
 	float base[3];        /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
 	float rotation[3][3]; /* orthonormal */
 	float *coefficient[3]; /* fitted: spectra of the three fields; NULL when decoded */
+	bool noisy;            /* fitted: noise was found and drawn towards 0 */
 
 	float step;            /* decoded, as all that follows */
 	float centre[3];       /* where values of |level| 1 and of larger ones lie beyond it, in steps; and for levels whose last planes are not there, as a share of what is missing */
@@ -67,8 +68,8 @@ struct default_place {
 float default_level_value(const struct default_model *model, struct lattice_dims dims, uint32_t layers,
                           const struct default_level *level, struct default_place *place);
 
-/* default_denoise.c: draws coefficients that noise alone would explain towards 0. */
-bp_status default_denoise(struct lattice_dims dims, float *coefficient, bp_error *error);
+/* default_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. */
+bp_status default_denoise(struct lattice_dims dims, float *coefficient, bool *noisy, bp_error *error);
 
 /* default_fill.c: values for invalid cells of one table [theta_h][theta_d][phi_d] of logarithms. */
 bp_status default_fill(struct lattice_dims dims, const uint8_t *valid, float *table, bp_error *error);

@@ -29,7 +29,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 		{0},
 	};
 	struct build_options options = {
-		.fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL},
+		.fit = {.profile = PROFILE_DEFAULT, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL},
 		.workers = workers_usable_cores(),
 	};
 	bool has_budget = false;
@@ -98,7 +98,7 @@ const struct command command_build = {
 		"  -o, --output OUT.bpk   the archive; an older one is replaced only by a whole one\n"
 		"  -j, --jobs N           worker processes (1 to 256; default: the usable cores);\n"
 		"                         the archive's bytes do not depend on it\n"
-		"      --profile NAME     'paper' or 'default'\n"
+		"      --profile NAME     'default', or 'paper': the paper's coding, for comparison\n"
 		"      --budget BYTES     largest record of a material (1000 to 4000000; default 60400);\n"
 		"                         BYTES may end in k, M, KiB or MiB\n"
 		"      --max-error E      instead: the smallest record whose log RMSE is at most E\n"
