@@ -1,6 +1,6 @@
 # One row per material in name order whatever the number of processes, then median, worst and mean.
 fixture alpha beta gamma
-build -q -o out.bpk .
+build -q --profile paper -o out.bpk .
 brdfpack compare --size 16 -j 1 out.bpk . >one
 brdfpack compare --size 16 -j 3 out.bpk . >three
 cmp one three && echo same

@@ -1,6 +1,6 @@
 # The pictures of the model, from an archive alone, with the measured file, and from a measured file.
 fixture alpha
-build -q -o out.bpk .
+build -q --profile paper -o out.bpk .
 brdfpack show -o a.svg out.bpk alpha
 grep -c '<image' a.svg
 grep -o 'before coding[^<]*' a.svg
