@@ -1,6 +1,6 @@
 # The figures of compare, worked out again from the independent reader's values and the definitions.
 fixture alpha
-build -q --budget 1000 -o out.bpk alpha.binary
+build -q --profile paper -o out.bpk alpha.binary
 top=$(cd "$(dirname "$0")/../../.." && pwd)
 [ -e "$top/scripts/read_bpk.py" ] || { echo "skip: no scripts/read_bpk.py"; exit; }
 python3 "$top/scripts/read_bpk.py" decode out.bpk alpha >decoded.json
