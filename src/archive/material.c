@@ -173,7 +173,7 @@ float bp_material_pdf(const bp_material *material, const float wi[3], const floa
 void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3])
 {
 	if (material->sampler)
-		sampler_albedo(material->sampler, theta_o, rgb);
+		sampler_albedo(material->table, theta_o, rgb);
 	else
 		rgb[0] = rgb[1] = rgb[2] = 0;
 }

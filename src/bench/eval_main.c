@@ -338,7 +338,7 @@ static void spread_print(const bp_archive *archive, uint64_t index, const char *
 		theta[n] = degrees[n] * M_PI / 180;
 	struct ggx_mixture fitted = ggx_fit(material, theta, ANGLES, &u);
 	for (int n = 0; n < ANGLES; n++) {
-		struct spread ours = spread_of_material(material, theta[n], SPREAD_SAMPLES, &u);
+		struct spread ours = spread_of_material(material, theta[n], 10 * SPREAD_SAMPLES, &u);
 		float rgb[3];
 		bp_material_albedo(material, (float)theta[n], rgb);
 		double albedo = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3;

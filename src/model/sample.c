@@ -16,7 +16,6 @@ struct sampler {
 	float s_edge[BINS + 1], s_per[BINS]; /* edges of the bins, and 1 / their widths */
 	float phi_mass[NODES][PHIS + 1];      /* cumulative mass at the edges of the bins of |phi_h|: 0, ..., 1 */
 	float s_mass[NODES][PHIS][BINS + 1];  /* conditional on phi, cumulative at the edges of s, not cut at the horizon: 0, ..., 1 */
-	float albedo[NODES][3];
 };
 
 /* ---- Geometry ---- */
@@ -282,7 +281,7 @@ static void accumulate(const struct sampler *p, const double *per_s, float *mass
 /* Returns the node's whole mass. flat: f is taken as 1. */
 static double build_node(const struct table *table, struct sampler *p, int node, bool flat, struct scratch *scratch)
 {
-	double masses[PHIS], total = 0, albedo[3] = {0, 0, 0};
+	double masses[PHIS], total = 0;
 	for (int phi = 0; phi < PHIS; phi++) {
 		double per_s[BINS], visible = 0, last = 0;
 		place(node_theta(node), phi, scratch);
@@ -306,8 +305,6 @@ static double build_node(const struct table *table, struct sampler *p, int node,
 			/* of the visible part; beyond the horizon the last one goes on, for wo that see farther */
 			last = per_s[bin] = seen > 0 ? mean / seen : last;
 			visible += mean * ds;
-			for (int c = 0; c < 3; c++)
-				albedo[c] += sum[c] * ds;
 		}
 		accumulate(p, per_s, p->s_mass[node][phi]);
 		masses[phi] = visible;
@@ -320,9 +317,6 @@ static double build_node(const struct table *table, struct sampler *p, int node,
 	}
 	p->phi_mass[node][0] = 0;
 	p->phi_mass[node][PHIS] = 1;
-	/* dw_h = 2 ds dphi, both signs of phi, PHIS bins of pi/PHIS */
-	for (int c = 0; c < 3; c++)
-		p->albedo[node][c] = flat ? 0 : (float)(albedo[c] * 4 * 3.14159265358979324 / PHIS);
 	return total;
 }
 
@@ -365,20 +359,38 @@ size_t sampler_bytes(const struct sampler *sampler)
 	return sizeof *sampler;
 }
 
-void sampler_albedo(const struct sampler *p, float theta_o, float rgb[3])
+void sampler_albedo(const struct table *table, float theta_o, float rgb[3])
 {
+	enum { TURNS = 128, STEPS = 512 }; /* phi_h, and s as a share of what is above the horizon, dense at the highlight */
+	float in[6][STEPS], value[3][STEPS], weight[STEPS];
+	double sum[3] = {0, 0, 0};
+
 	rgb[0] = rgb[1] = rgb[2] = 0;
-	if (!(theta_o >= 0 && theta_o <= 1.5707964f))
+	if (!(theta_o >= 0 && theta_o < 1.5707963f))
 		return;
-	float at = (NODES - 1) * (1 - sqrtf(fmaxf(0, 1 - theta_o / 1.57079633f)));
-	int node = (int)at;
-	node = node < NODES - 1 ? node : NODES - 2;
-	float t = at - (float)node;
-	/* Catmull-Rom; at the ends the missing neighbour continues the line */
-	for (int c = 0; c < 3; c++) {
-		float b = p->albedo[node][c], d = p->albedo[node + 1][c];
-		float before = node ? p->albedo[node - 1][c] : 2 * b - d, after = node + 2 < NODES ? p->albedo[node + 2][c] : 2 * d - b;
-		float value = b + 0.5f * t * (d - before + t * (2 * before - 5 * b + 4 * d - after + t * (3 * (b - d) + after - before)));
-		rgb[c] = value > 0 ? value : 0;
+	const float sine = sinf(theta_o), cosine = cosf(theta_o);
+	for (int turn = 0; turn < TURNS; turn++) {
+		const double phi = (turn + 0.5) / TURNS * 2 * 3.14159265358979324;
+		const float cx = (float)cos(phi), cy = (float)sin(phi), top = horizon_s(sine, cosine, cx);
+		for (int n = 0; n < STEPS; n++) {
+			const float a = (float)n / STEPS, b = (float)(n + 1) / STEPS, q = ((float)n + 0.5f) / STEPS;
+			const float s = top * (q * q) * (q * q), hz = 1 - 2 * s, radius = 2 * sqrtf(s * (1 - s)), hx = radius * cx;
+			const float dot = hx * sine + hz * cosine, z = 2 * dot * hz - cosine;
+			in[0][n] = 2 * dot * hx - sine;
+			in[1][n] = 2 * dot * radius * cy;
+			in[2][n] = z;
+			in[3][n] = sine;
+			in[4][n] = 0;
+			in[5][n] = cosine;
+			/* f cos theta_i 4 (wo.h) 2 ds dphi; b^4 - a^4 without cancellation */
+			weight[n] = z > 0 ? z * 4 * dot * 2 * top * ((b - a) * (b + a) * (b * b + a * a)) : 0;
+		}
+		table_evaluate_batch(table, STEPS, (const float *const[]){in[0], in[1], in[2]}, (const float *const[]){in[3], in[4], in[5]},
+		                     (float *const[]){value[0], value[1], value[2]});
+		for (int c = 0; c < 3; c++)
+			for (int n = 0; n < STEPS; n++)
+				sum[c] += (double)value[c][n] * (double)weight[n];
 	}
+	for (int c = 0; c < 3; c++)
+		rgb[c] = (float)(sum[c] * 2 * 3.14159265358979324 / TURNS);
 }
