@@ -171,7 +171,7 @@ static void the_mixer_learns_what_a_bit_depends_on(void **unused)
 	}
 	range_encoder_end(&encoder);
 	/* The entropy is 0.286 bits each; contexts of 60 bits' memory and four weights cost a little. */
-	assert_true(bytes.count * 8 < 20000 * 0.286 * 1.08);
+	assert_true((double)bytes.count * 8 < 20000 * 0.286 * 1.08);
 	byte_buffer_free(&bytes);
 }
 

@@ -131,12 +131,18 @@ static bp_status images_write(const struct compare *compare, const struct compar
 	return status;
 }
 
-/* Rows appear in the items' order, as soon as all before are there. */
+/* Rows and failures appear in the items' order, as soon as all before are there. */
 static void rows_print(struct compare *compare)
 {
-	for (; compare->printed < compare->count && compare->items[compare->printed].done; compare->printed++)
-		if (!compare->items[compare->printed].failed)
-			compare_report_row(&compare->report, &compare->items[compare->printed]);
+	for (; compare->printed < compare->count && compare->items[compare->printed].done; compare->printed++) {
+		struct compare_item *item = &compare->items[compare->printed];
+		if (item->error)
+			report_error(compare->archive_path, item->entry.name, item->error);
+		free(item->error);
+		item->error = NULL;
+		if (!item->failed)
+			compare_report_row(&compare->report, item);
+	}
 	fflush(stdout);
 }
 
@@ -151,8 +157,13 @@ static void result_take(void *user, const struct job_result *result)
 		memcpy(&item->result, result->record, sizeof item->result);
 		error.status = images_write(compare, item, result->record + sizeof item->result, &error);
 	}
-	if (error.status)
-		item_fail(compare, item, &error);
+	if (error.status && (item->error = malloc(sizeof error))) {
+		*item->error = error;
+		item->failed = true;
+		compare->failed++;
+	} else if (error.status) {
+		item_fail(compare, item, &error); /* out of turn, but said */
+	}
 	item->done = true;
 	rows_print(compare);
 }
@@ -290,6 +301,8 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	}
 	comparison_plans_free(&compare.job.plans);
 	source_list_free(&compare.sources);
+	for (size_t n = 0; n < compare.count && compare.items; n++)
+		free(compare.items[n].error);
 	free(compare.items);
 	free(compare.wanted);
 	selection_close(&compare.selection);

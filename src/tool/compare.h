@@ -27,6 +27,7 @@ struct compare_item {
 	struct index_entry entry;
 	const struct source_item *source;
 	bool done, failed;
+	bp_error *error; /* of a measurement that failed, until its turn to be reported comes */
 	struct compare_result result;
 };
 
