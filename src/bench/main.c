@@ -41,6 +41,7 @@ static const double BUDGETS[] = {4000, 8000, 16000, 30000, 60400, 120000};
 struct run {
 	struct inputs inputs;
 	const char *truth; /* folder of the tables that the figures are taken against; NULL: the inputs themselves */
+	bool quick; /* every fit once */
 	bool method_on[METHOD_ROWS];
 	double budgets[BUDGETS_MAX];
 	int budget_count;
@@ -89,7 +90,7 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 		if ((status = method->fit(material, (size_t)row->budget, &state, error)))
 			return status;
 		seconds[count++] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
-	} while (count < REPEATS && seconds[0] < SHORT_SECONDS);
+	} while (!run->quick && count < REPEATS && seconds[0] < SHORT_SECONDS);
 	row->fit_seconds = median_of(seconds, count);
 	row->bytes = (double)method->bytes(state);
 	row->parameters = (double)method->parameters(state);
@@ -332,7 +333,7 @@ static void usage(FILE *out)
 	        "  -m LIST   only these methods, with commas: paper,default,ward,...\n"
 	        "  -b LIST   budgets in bytes, with commas (4000,8000,16000,30000,60400,120000)\n"
 	        "  -t FOLDER figures against the tables of the same names there, not against the inputs\n"
-	        "  -q        quick: three materials, spread over the list\n"
+	        "  -q        quick: three materials, spread over the list; every fit once\n"
 	        "  -j N      processes (1: times are least disturbed)\n");
 }
 
@@ -341,7 +342,6 @@ int main(int argc, char **argv)
 	static struct run run;
 	const char *output = NULL, *label = NULL, *names = NULL;
 	char temporary[4096];
-	bool quick = false;
 	int workers = 1, option, count;
 	struct row *rows;
 	FILE *out = stdout;
@@ -358,7 +358,7 @@ int main(int argc, char **argv)
 		case 'm': choose_methods(&run, optarg); break;
 		case 'b': choose_budgets(&run, optarg); break;
 		case 't': run.truth = optarg; break;
-		case 'q': quick = true; break;
+		case 'q': run.quick = true; break;
 		case 'j': workers = atoi(optarg); break;
 		case 'h': usage(stdout); return 0;
 		default: usage(stderr); return 2;
@@ -369,7 +369,7 @@ int main(int argc, char **argv)
 	inputs_sort(&run.inputs);
 	if (names && !inputs_keep_listed(&run.inputs, names))
 		return 2;
-	if (quick)
+	if (run.quick)
 		inputs_thin(&run.inputs, QUICK_MATERIALS);
 	if (!run.inputs.count || workers < 1 || workers > WORKERS_MAX) {
 		fprintf(stderr, run.inputs.count ? "brdfpack-bench: -j wants 1 to 64\n" : "brdfpack-bench: no MERL file (*.binary) found\n");
