@@ -12,8 +12,9 @@
  * was hurt by a bad file may write anything. One that does is killed, as if it had died.
  *
  * Data. A worker opens files itself: the list of them is older than its fork. What only the parent can
- * read, because it comes one after another in a stream, it copies into a slot, a memory file that every worker inherits; the job names the slot. The worker only
- * reads it, so the data outlive the worker and a second attempt needs no second copy.
+ * read, because it comes one after another in a stream, it copies into a slot, a memory file that every
+ * worker inherits; the job names the slot. The worker only reads it, so the data outlive the worker and a
+ * second attempt needs no second copy.
  *
  * Closing. Each child closes every descriptor of its siblings' pipes, so the parent's end of a
  * job pipe is the only one: when the parent closes it or dies, the worker reads the end of file
@@ -33,6 +34,10 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +62,19 @@ struct result_frame {
 };
 
 /* ---- in the worker ---- */
+
+/*
+ * Every material needs the same few tables of 6 to 35 MB. Freed memory stays in the process, so that the next
+ * table finds its pages: with fresh ones, the kernel's clearing took a tenth of a build.
+ */
+static void keep_memory(void)
+{
+#ifdef __GLIBC__
+	mallopt(M_MMAP_MAX, 0);
+	mallopt(M_TRIM_THRESHOLD, INT_MAX);
+	mallopt(M_TOP_PAD, 16 << 20);
+#endif
+}
 
 static bool read_whole(int fd, void *bytes, size_t count)
 {
@@ -161,6 +179,7 @@ bool worker_start(const struct worker_setup *setup, struct worker *worker)
 				worker_close(&setup->all[i]);
 		close(jobs[1]);
 		close(results[0]);
+		keep_memory();
 		worker_main(setup, jobs[0], results[1]);
 	}
 	close(jobs[0]);
