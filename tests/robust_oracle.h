@@ -112,36 +112,4 @@ ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n)
 	return out;
 }
 
-/* One iteration from a given line, in long double. */
-ORACLE struct oracle slow_step(const double *x, const double *y, size_t n, long double a, long double b)
-{
-	long double *v = malloc(n * sizeof *v), *f = malloc(n * sizeof *f), mean_x = 0, sxx = 0, sw = 0, sx = 0, sy = 0, xx = 0, xy = 0;
-	for (size_t i = 0; i < n; i++)
-		mean_x += x[i] / (long double)n;
-	for (size_t i = 0; i < n; i++)
-		sxx += (x[i] - mean_x) * (x[i] - mean_x);
-	for (size_t i = 0; i < n; i++) {
-		long double h = 1.0L / (long double)n + (x[i] - mean_x) * (x[i] - mean_x) / sxx;
-		f[i] = 1 / sqrtl(1 - (h > 0.9999L ? 0.9999L : h));
-		v[i] = fabsl((y[i] - a - b * x[i]) * f[i]);
-	}
-	qsort(v, n, sizeof *v, ascending);
-	long double s = (v[1 + (n - 2) / 2] + v[1 + (n - 1) / 2]) / 2 / 0.6745L;
-	for (size_t i = 0; i < n; i++) {
-		long double u = (y[i] - a - b * x[i]) * f[i] / (4.685L * s);
-		v[i] = fabsl(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
-		sw += v[i];
-		sx += v[i] * x[i];
-		sy += v[i] * y[i];
-	}
-	for (size_t i = 0; i < n; i++) {
-		xx += v[i] * (x[i] - sx / sw) * (x[i] - sx / sw);
-		xy += v[i] * (x[i] - sx / sw) * (y[i] - sy / sw);
-	}
-	free(v);
-	free(f);
-	struct oracle out = {.slope = (double)(xy / xx), .intercept = (double)(sy / sw - xy / xx * (sx / sw))};
-	return out;
-}
-
 #endif

@@ -296,10 +296,10 @@ static void a_large_sample_takes_the_bracketed_median_and_still_agrees_with_gsl(
 }
 
 /*
- * The bright few follow a line of another slope than the many, with a gradual change between: plain iterations
- * creep from one to the other. What comes out must be a fixed point: one more plain iteration leaves it.
+ * The bright few follow a line of another slope than the many, with a gradual change between: the iterations creep
+ * from one to the other, from anchors. They must take GSL's steps, also where both end at the limit of 100.
  */
-static void a_creeping_slope_ends_at_a_fixed_point(void **user)
+static void a_creeping_slope_takes_the_steps_of_gsl(void **user)
 {
 	(void)user;
 	enum { MANY = 40000 };
@@ -311,21 +311,8 @@ static void a_creeping_slope_ends_at_a_fixed_point(void **user)
 	}
 	struct robust_fit fit;
 	assert_int_equal(robust_fit(x, y, MANY, &fit, NULL), BP_OK);
-	assert_true(fit.converged && fit.iterations < ROBUST_ITERATIONS_MAX);
-	struct oracle next = slow_step(x, y, MANY, fit.intercept, fit.slope);
-	assert_true(fabs(next.intercept - fit.intercept) <= 1e-7 * fabs(fit.intercept));
-	assert_true(fabs(next.slope - fit.slope) <= 1e-7 * fabs(fit.slope));
-	/* The search magnifies rounding errors, and must come to the same line in any unit all the same. */
-	for (int k = 0; k < 2; k++) {
-		const double factor = k ? 3.7e5 : 2.9e-12 / 3.7e5;
-		struct robust_fit scaled;
-		for (size_t i = 0; i < MANY; i++)
-			y[i] *= factor;
-		assert_int_equal(robust_fit(x, y, MANY, &scaled, NULL), BP_OK);
-		double whole = k ? 2.9e-12 : factor;
-		assert_true(fabs(scaled.slope / whole - fit.slope) <= 1e-7 * fabs(fit.slope));
-		assert_true(fabs(scaled.intercept / whole - fit.intercept) <= 1e-6 * fabs(fit.intercept));
-	}
+	assert_true(fit.iterations > 50);
+	assert_agrees(x, y, MANY, 1e-6);
 	free(x);
 	free(y);
 }
@@ -374,7 +361,7 @@ int main(void)
 		cmocka_unit_test(the_ends_of_the_range_of_double_are_fitted),
 		cmocka_unit_test(the_rejected_share_is_what_the_weights_say),
 		cmocka_unit_test(a_large_sample_takes_the_bracketed_median_and_still_agrees_with_gsl),
-		cmocka_unit_test(a_creeping_slope_ends_at_a_fixed_point),
+		cmocka_unit_test(a_creeping_slope_takes_the_steps_of_gsl),
 		cmocka_unit_test(both_kernel_tables_give_the_same_bits),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

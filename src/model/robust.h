@@ -18,14 +18,12 @@
  * size of the terms it is the difference of) counts as converged even if it is nearly 0 itself; GSL goes on to
  * its iteration limit there, with the same result.
  *
- * And one for accuracy. On measured materials the slope, which a few bright cells decide, often creeps on for
- * hundreds of iterations, and the limit of 100 would stop it anywhere. From 32,768 observations on, where the steps no
- * longer shrink, the fixed point of the same iteration is sought by strides along the creep (robust_valley.c): it
- * converges within the 100, to a line that another iteration does not change. Where GSL converges steadily the answer
- * is GSL's; where its creep comes to rest by chance, fixed points can lie close together, and it may be a neighbour.
+ * On measured materials the slope, which a few bright cells decide, often creeps on for hundreds of iterations; the
+ * limit of 100 then ends it before it converges, here as in GSL. Converging faster by extrapolation was tried: it ends
+ * at other fixed points than the plain iteration, also where that converges, so each step is the plain one.
  *
  * Per iteration the observations are read twice and copied never: the median is found by counting what lies
- * below a bracket around the expected median and collecting the few inside it. Where the line moves little, one
+ * below a bracket around the expected median and collecting the few inside it. Where the line creeps, one
  * pass serves many iterations (robust_anchor.h).
  * Sums are compensated and taken about the weighted mean of the iteration before, so neither a large common
  * offset nor a tiny or huge unit (1e-300 to 1e300) loses digits.

@@ -141,11 +141,6 @@ void walk_start(struct walk *walk)
 	line_step(&walk->sums, &walk->line);
 }
 
-double walk_limit(const struct walk *walk)
-{
-	return TUNING * fmax(walk->next.median / MAD_TO_SIGMA, walk->sigma_least);
-}
-
 /* One iteration over all observations. */
 static void step_plain(struct walk *walk)
 {

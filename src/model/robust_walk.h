@@ -33,8 +33,6 @@ void walk_start(struct walk *walk);
 void walk_step(struct walk *walk);
 /* Places an anchor where the walk stands for the steps to come, `before` being where it stood one step ago. */
 bool walk_anchor(struct walk *walk, const struct robust_line *before, uint32_t iteration);
-/* The residual from which on weights are 0, after a step: 4.685 sigma. */
-double walk_limit(const struct walk *walk);
 
 static inline double line_intercept(const struct robust_line *line)
 {
@@ -42,11 +40,5 @@ static inline double line_intercept(const struct robust_line *line)
 }
 /* Does the step from one line to the other meet the criterion to stop? */
 bool line_settled(const struct robust_line *from, const struct robust_line *to);
-
-/*
- * The search for a fixed point along the valley in which the iterations creep, in at most `evaluations` of them, *used of
- * them. True when the last one met the criterion to stop; walk->line is where it led.
- */
-bool valley_seek(struct walk *walk, uint32_t evaluations, uint32_t *used);
 
 #endif
