@@ -107,9 +107,11 @@ static void result_take(void *user, const struct job_result *result)
 {
 	struct build *build = user;
 	struct item *item = &build->items.item[result->number];
-	struct outcome *outcome = outcome_create(build);
 	bp_error error;
 
+	if (build->stopped) /* by a result that came in with this one */
+		return;
+	struct outcome *outcome = outcome_create(build);
 	if (!outcome)
 		return;
 	outcome->seconds = result->seconds;
