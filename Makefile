@@ -65,6 +65,8 @@ help:
 	@echo "  bench-eval   load, evaluate and sample beside the raw table"
 	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
 	@echo "  stress       hundreds of adversarial materials: one table of what holds (a few minutes)"
+	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
+	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  clean        removes $(BUILD)/"
@@ -144,13 +146,41 @@ check-symbols: all
 	$(Q)nm -D --defined-only $(BUILD)/$(SHARED) | awk '$$3 !~ /^bp_/ {print "$(SHARED) exports " $$3; bad = 1} END {exit bad}'
 
 # Adversarial materials (tests/stress.c). `make stress STRESS_FLAGS="-s 1"` is the short form.
-STRESS_FLAGS ?= -s 5 -m
+STRESS_FLAGS ?= -s 5
 STRESS_O     := $(addprefix $(BUILD)/tests/,stress.o stress_cases.o stress_reference.o stress_subject.o)
 $(BUILD)/tests/stress: $(STRESS_O) $(BUILD)/internal.a
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lgsl -lgslcblas $(LIBRARY_LIBS)
 stress: $(BUILD)/tests/stress
 	$(Q)$< $(STRESS_FLAGS)
+
+# Faults survived: damaged archives under sanitizers, killed and starved builds, threads. FAULTS_FLAGS=--long takes longer.
+FAULTS_FLAGS ?=
+$(BUILD)/tests/faults: $(BUILD)/tests/faults.o $(BUILD)/tests/archive_walk.o $(BUILD)/internal.a
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lpthread $(LIBRARY_LIBS)
+$(BUILD)/tests/fault_shim.so: tests/fault_shim.c
+	@mkdir -p $(@D)
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(REQUIRED) $(WARNINGS) -O1 -fPIC -shared -o $@ $< -ldl
+faults: all
+	$(Q)$(MAKE) --no-print-directory $(BUILD)/tests/faults $(BUILD)/tests/fault_shim.so
+	$(Q)$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="-O1 -g" SANITIZE=address,undefined $(BUILD)/asan/tests/faults
+	$(Q)$(MAKE) --no-print-directory BUILD=$(BUILD)/tsan CFLAGS="-O1 -g" SANITIZE=thread $(BUILD)/tsan/tests/faults
+	$(Q)tests/faults.sh $(BUILD) $(FAULTS_FLAGS)
+
+# Coverage-guided fuzzing (clang): `make fuzz FUZZ_SECONDS=600` spends that much on each target.
+FUZZ_SECONDS ?= 60
+FUZZ_BUILD   := $(BUILD)/fuzz
+FUZZ_TARGETS := archive record merl manifest options
+ifeq ($(SANITIZE),fuzzer-no-link,address,undefined)
+$(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz_%.o $(BUILD)/tests/archive_walk.o $(BUILD)/internal.a $(filter-out $(BUILD)/src/tool/main.o,$(TOOL_O))
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) $(BUILD)/internal.a $(TOOL_LIBS) $(LIBRARY_LIBS)
+endif
+fuzz:
+	$(Q)$(MAKE) --no-print-directory BUILD=$(FUZZ_BUILD) CC=clang CFLAGS="-O1 -g" SANITIZE=fuzzer-no-link,address,undefined $(FUZZ_TARGETS:%=$(FUZZ_BUILD)/tests/fuzz_%)
+	$(Q)tests/fuzz.sh $(FUZZ_BUILD) $(FUZZ_SECONDS)
 
 # Run time against error: `make bench BENCH_DATA=FOLDER BENCH_LABEL="what it is"`; without BENCH_DATA the demo set.
 BENCH_OUT    ?= $(BUILD)/bench
@@ -213,5 +243,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval stress install uninstall clean FORCE
+.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval stress faults fuzz install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -11,12 +11,14 @@
 #     clang     builds everything by clang with warnings as errors
 #     valgrind  a small build, list, extract and verify under valgrind
 #     stress    adversarial materials through every profile (the short form of `make stress`)
+#     faults    damaged archives, killed and starved builds, threads (the short form of `make faults`)
+#     fuzz      each fuzz target for some seconds
 #
 # Without a JOB: all of them. The last line is "N passed, M failed"; the exit code is 1 when M > 0.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
-all_jobs="unit cli install python asan clang valgrind stress"
+all_jobs="unit cli install python asan clang valgrind stress faults fuzz"
 jobs=${*:-$all_jobs}
 logs=build/logs
 passed=0
@@ -33,7 +35,7 @@ for job in $jobs; do
 done
 
 groups="build test"
-case " $jobs " in *" asan "* | *" clang "* | *" valgrind "*) groups+=" slow" ;; esac
+case " $jobs " in *" asan "* | *" clang "* | *" valgrind "* | *" faults "* | *" fuzz "*) groups+=" slow" ;; esac
 # shellcheck disable=SC2086
 scripts/setup.sh $groups || exit 1
 mkdir -p "$logs"
@@ -117,6 +119,11 @@ job_stress() {
 	build test CFLAGS="-O3 -g -Werror" || return
 	check "stress" "$logs/stress.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" STRESS_FLAGS="-g 3 -v" stress
 }
+job_faults() {
+	build test CFLAGS="-O3 -g -Werror" || return
+	check "faults" "$logs/faults.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" faults
+}
+job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" FUZZ_SECONDS=6 fuzz; }
 
 for job in $jobs; do
 	before=$passed

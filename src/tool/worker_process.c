@@ -210,8 +210,9 @@ void worker_send(struct worker *worker, struct kept_job *kept)
 	                                   kept->job.slot_bytes, kept->job.slot,    (uint32_t)name_bytes};
 	memcpy(message.name, kept->name, name_bytes);
 	worker->current = kept;
-	/* a worker that has died meanwhile is noticed by its result pipe, so a failure needs no care here */
-	write_whole(worker->job_fd, &message, sizeof message.frame + name_bytes);
+	/* A worker that has died is noticed by its result pipe; one that lives must not wait for what never comes. */
+	if (!write_whole(worker->job_fd, &message, sizeof message.frame + name_bytes))
+		kill(worker->pid, SIGKILL);
 }
 
 /* What the buffer holds: 1 a whole result, 0 a part of one, -1 nonsense. */

@@ -65,4 +65,5 @@ def main(folder):
     write(to("huge"), [[1e300] * cells] * 3)
 
 
-main(sys.argv[1])
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,119 @@
+#include "archive_walk.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "archive/format.h"
+#include "codec/bytes.h"
+#include "codec/record.h"
+
+static void values_check(const float *value, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (!(value[i] >= 0 && isfinite(value[i])))
+			abort();
+}
+
+static void material_walk(const bp_material *material, struct walk_values *out)
+{
+	static const float directions[5][3] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, 0.8f, 0.6f}, {-0.48f, 0.64f, 0.6f}, {0.9999f, 0, 0.0141f}};
+	for (int i = 0; i < 4; i++) {
+		float rgb[3];
+		bp_material_evaluate(material, directions[i], directions[i + 1], out->rgb[i]);
+		values_check(out->rgb[i], 3);
+		bp_material_nearest(material, directions[i + 1], directions[i], rgb);
+		values_check(rgb, 3);
+	}
+}
+
+/* Head of material m: its name and whether its lattice is small. */
+static bool material_small(const bp_archive *archive, uint64_t m, char name[BP_NAME_BYTES_MAX + 1])
+{
+	bp_material_info info = {.struct_bytes = sizeof info};
+	uint64_t found;
+	if (bp_archive_name(archive, m, name, NULL) != BP_OK)
+		return false;
+	if (bp_archive_find(archive, name, &found, NULL) == BP_OK && found != m)
+		abort();
+	return bp_archive_info(archive, m, &info, NULL) == BP_OK && (uint64_t)info.theta_h * info.theta_d * info.phi_d <= WALK_CELLS_MAX;
+}
+
+bp_status archive_walk(const char *path, uint64_t first, uint64_t most, struct walk_values *seen, uint64_t *seen_count)
+{
+	bp_archive *archive = NULL;
+	bool small = true;
+	uint64_t count = 0;
+	bp_status status = bp_archive_open(path, &archive, NULL);
+
+	if (seen_count)
+		*seen_count = 0;
+	if (status)
+		return status;
+	for (uint64_t n = 0; n < most && n < bp_archive_count(archive); n++) {
+		const uint64_t m = (first + n) % bp_archive_count(archive);
+		const bp_load_options options = {.struct_bytes = sizeof options, .form = (bp_form)(m % 2), .colour = (bp_colour)(m / 2 % 2),
+		                                 .max_log_rmse = m % 3 == 0 ? 0.1 : 0};
+		struct walk_values values = {.name = ""};
+		bp_material *material = NULL;
+		if (!material_small(archive, m, values.name)) {
+			small = false;
+			continue;
+		}
+		if (bp_material_load(archive, m, &options, &material, NULL) != BP_OK)
+			continue;
+		material_walk(material, &values);
+		bp_material_free(material);
+		if (seen)
+			seen[count] = values;
+		count++;
+	}
+	if (seen_count)
+		*seen_count = count;
+	status = bp_archive_verify(archive, small && most >= bp_archive_count(archive) ? BP_VERIFY_DEEP : 0, NULL, NULL, NULL);
+	bp_archive_close(archive);
+	return status;
+}
+
+/* ---- mending ---- */
+
+void record_mend(uint8_t *bytes, size_t count)
+{
+	enum { AT_HEAD = 8, AT_LAYERS = 31, AT_SECTIONS = 32, AT_TABLES = 208, ROW = 32 };
+	uint32_t head, layers, sections;
+
+	if (count < AT_TABLES)
+		return;
+	head = load_u32(bytes + AT_HEAD);
+	layers = bytes[AT_LAYERS];
+	sections = load_u16(bytes + AT_SECTIONS);
+	if (head > count || head < AT_TABLES + 4)
+		return;
+	for (uint32_t s = 0; s < sections && AT_TABLES + ROW * (layers + s + 1) + 4 <= head; s++) {
+		uint8_t *row = bytes + AT_TABLES + ROW * (layers + s);
+		const uint32_t offset = load_u32(row + 12), length = load_u32(row + 16);
+		if (offset <= count && length <= count - offset)
+			store_u32(row + 20, bytes_crc32(bytes + offset, length));
+	}
+	store_u32(bytes + head - 4, bytes_crc32(bytes, head - 4));
+}
+
+void archive_mend(uint8_t *bytes, size_t count)
+{
+	uint64_t index, pages;
+
+	if (count < ARCHIVE_HEADER_BYTES)
+		return;
+	store_u32(bytes + 16, (uint32_t)count);
+	store_u32(bytes + 20, (uint32_t)((uint64_t)count >> 32));
+	store_u32(bytes + 60, bytes_crc32(bytes, 60));
+	index = load_u64(bytes + 32);
+	pages = load_u32(bytes + 40);
+	for (uint64_t p = 0; p < pages && index <= count && PAGE_BYTES * (p + 1) <= count - index; p++) {
+		uint8_t *page = bytes + index + PAGE_BYTES * p;
+		store_u32(page + PAGE_BYTES - 4, bytes_crc32(page, PAGE_BYTES - 4));
+	}
+	for (size_t at = ARCHIVE_HEADER_BYTES; at + RECORD_MAGIC_BYTES <= count; at++)
+		if (bytes[at] == 0x8B && memcmp(bytes + at, RECORD_MAGIC, RECORD_MAGIC_BYTES) == 0)
+			record_mend(bytes + at, count - at);
+}

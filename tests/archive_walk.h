@@ -1,0 +1,30 @@
+/*
+ * archive_walk.h: everything a renderer does with an archive, on archives that may be damaged; and checksums mended
+ * after damage, so that what stands behind them is reached too.
+ */
+#ifndef TESTS_ARCHIVE_WALK_H
+#define TESTS_ARCHIVE_WALK_H
+
+#include "brdfpack.h"
+
+enum { WALK_CELLS_MAX = 1 << 16 }; /* larger lattices are legal but slow: materials of more cells are not loaded */
+
+/* The values of one material in a few directions. */
+struct walk_values {
+	char name[BP_NAME_BYTES_MAX + 1];
+	float rgb[4][3];
+};
+
+/*
+ * Opens, verifies (deeply when all lattices are small), lists, finds and loads up to `most` materials from `first` on, in
+ * one of the forms, and evaluates them. Aborts when a value is negative, NaN or infinite. Returns what
+ * verification said, or why it did not open. seen (may be NULL) receives up to `most` materials, *seen_count of them.
+ */
+bp_status archive_walk(const char *path, uint64_t first, uint64_t most, struct walk_values *seen, uint64_t *seen_count);
+
+/* Mends the CRC32 of a record's sections and head, as far as the bytes are there. */
+void record_mend(uint8_t *bytes, size_t count);
+/* Mends size and CRC32 of the header, of the pages it names, and every record found by its magic. */
+void archive_mend(uint8_t *bytes, size_t count);
+
+#endif

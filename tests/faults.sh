@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Faults survived: tests/faults.sh BUILD [--long]. BUILD holds brdfpack, tests/faults and the same with sanitizers in asan/, tsan/.
+set -euo pipefail
+build=$PWD/$1
+long=${2:-}
+here=$(cd "$(dirname "$0")" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+mkdir few many
+python3 - "$here" <<'END'
+import importlib.util, sys
+spec = importlib.util.spec_from_file_location("fixtures", sys.argv[1] + "/cli/fixtures.py")
+fixtures = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(fixtures)
+for n in range(2):
+    fixtures.write("few/m%d.binary" % n, fixtures.table(n + 1, (4, 4, 4)), (4, 4, 4))
+for n in range(400):
+    fixtures.write("many/material-%03d.binary" % n, fixtures.table(n + 1, (4 + n % 3, 5, 6)), (4 + n % 3, 5, 6))
+END
+for profile in paper default; do
+	"$build/brdfpack" build --any-lattice -q --profile $profile -o few-$profile.bpk few
+done
+"$build/brdfpack" build --any-lattice -q -o many.bpk many
+[ -n "$long" ] && mutations=100000 loads=10000 || mutations=3000 loads=10000
+for profile in paper default; do
+	"$build/asan/tests/faults" truncate few-$profile.bpk
+	"$build/asan/tests/faults" flip few-$profile.bpk
+done
+"$build/asan/tests/faults" mutate many.bpk $mutations
+"$build/tests/faults" load many.bpk $loads
+"$build/tsan/tests/faults" threads many.bpk 100
+python3 "$here/faults.py" "$build/brdfpack" "$build/tests/fault_shim.so" $long

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Coverage-guided fuzzing: tests/fuzz.sh BUILD SECONDS. BUILD holds fuzz_* (libFuzzer) and an ordinary brdfpack.
+# The seed corpus is made here: the test vectors, their records, small MERL files, the manifests, command lines.
+set -euo pipefail
+build=$1 seconds=$2
+here=$(cd "$(dirname "$0")" && pwd)
+corpus=$build/corpus
+rm -rf "$corpus" && mkdir -p "$corpus"/{archive,record,merl,manifest,options}
+cp "$here"/../format-spec/vectors/*.bpk "$corpus/archive"
+python3 - "$corpus" <<'END'
+import glob, os, struct, sys
+corpus = sys.argv[1]
+magic = b"\x8bREC\r\n\x1a\n"
+for path in glob.glob(corpus + "/archive/*.bpk"):
+    data = open(path, "rb").read()
+    at, n = data.find(magic), 0
+    while at >= 0 and at + 16 <= len(data):
+        length = struct.unpack_from("<I", data, at + 12)[0]
+        open("%s/record/%s-%d" % (corpus, os.path.basename(path), n), "wb").write(data[at:at + min(length, 1 << 16)])
+        at, n = data.find(magic, at + 1), n + 1
+for h, d, p in (4, 4, 4), (5, 4, 6):
+    cells = h * d * p
+    values = [((i * 7919) % 1000) / 500 - 0.1 for i in range(3 * cells)]
+    values[5], values[11], values[17] = float("nan"), float("inf"), -1.0
+    body = struct.pack("<3i%dd" % (3 * cells), h, d, p, *values)
+    open("%s/merl/%d%d%d" % (corpus, h, d, p), "wb").write(body)
+    open("%s/merl/%d%d%d-short" % (corpus, h, d, p), "wb").write(body[:-3])
+lines = ["-o\nout.bpk\n-j\n4\nin", "--budget\n60k\n--quiet", "--budget=1.5MiB\nx", "--max-error\n1e-3\n--\n-q", "-j0\n-j\n-5\n--jobs=9999999999999999999",
+         "--max-error=nan\n--help", "-qqj2\n--bud\n1000\n--output="]
+for n, line in enumerate(lines):
+    open("%s/options/%d" % (corpus, n), "w").write(line)
+END
+for file in "$here"/../manifests/*; do head -c 4000 "$file" >"$corpus/manifest/$(basename "$file")"; done
+failed=0
+for target in archive record merl manifest options; do
+	mkdir -p "$build/found"
+	if ! "$build/tests/fuzz_$target" -max_total_time="$seconds" -seed=1 -max_len=16384 -timeout=20 -rss_limit_mb=3000 -print_final_stats=1 \
+		-close_fd_mask=3 -artifact_prefix="$build/found/$target-" "$corpus/$target" >"$build/fuzz-$target.log" 2>&1; then
+		failed=1
+		echo "fuzz_$target failed:"
+		tail -n 40 "$build/fuzz-$target.log"
+	fi
+	grep -a 'number_of_executed_units\|^Done' "$build/fuzz-$target.log" | sed "s/^/$target: /" || true
+done
+exit $failed

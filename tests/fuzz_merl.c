@@ -1,0 +1,39 @@
+/* The MERL reader on arbitrary bytes, with any extents. */
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "merl/merl_file.h"
+
+struct input {
+	const uint8_t *bytes;
+	size_t left;
+};
+
+/* In odd portions, as a pipe gives them. */
+static bp_status input_read(void *user, void *bytes, size_t capacity, size_t *read, bp_error *error)
+{
+	struct input *input = user;
+	(void)error;
+	*read = capacity < input->left ? capacity : input->left;
+	*read = *read > 1000 ? 1000 : *read;
+	memcpy(bytes, input->bytes, *read);
+	input->bytes += *read;
+	input->left -= *read;
+	return BP_OK;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
+{
+	struct input input = {data, count};
+	struct lattice lattice;
+	if (lattice_read(input_read, &input, NULL, NULL, true, &lattice, NULL) != BP_OK)
+		return 0;
+	for (size_t i = 0; i < lattice_cells(lattice.dims); i++)
+		for (int c = 0; c < 3; c++)
+			if (lattice.valid[i] && !(lattice.rgb[c][i] >= 0 && lattice.rgb[c][i] <= DBL_MAX))
+				abort();
+	lattice_free(&lattice);
+	return 0;
+}
