@@ -20,7 +20,8 @@ SANFLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-poi
 endif
 ALL_CFLAGS = $(REQUIRED) $(WARNINGS) $(CFLAGS) $(SANFLAGS)
 Q := $(if $(filter 1,$(V)),,@)
-SAY = @$(if $(filter 1,$(V)),true,echo) "  $(1)"
+# quiet under make -s, and where V=1 shows the commands themselves
+SAY = @$(if $(filter 1,$(V))$(findstring s,$(firstword -$(MAKEFLAGS))),true,echo) "  $(1)"
 
 VERSION  := $(shell sed -n 's/^\#define BP_VERSION "\(.*\)"/\1/p' src/brdfpack.h)
 SONAME   := libbrdfpack.so.$(firstword $(subst ., ,$(VERSION)))
@@ -232,7 +233,7 @@ install: all $(BUILD)/brdfpack.pc
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	install -m 644 $(BUILD)/brdfpack.pc $(DESTDIR)$(LIBDIR)/pkgconfig/
-	install -m 644 man/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man1/
+	install -m 644 src/tool/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man1/
 
 uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a

@@ -34,7 +34,7 @@ if command -v g++ >/dev/null; then
 	[ "$("$scratch/cpp" "$archive")" = "$count" ]
 fi
 # the documentation's example draws a sphere: 160 x 160 pixels, and not all alike
-cc -std=c17 "${flags[@]}" -O2 -o "$scratch/sphere" examples/sphere.c "${shared[@]}" -lm
+cc -std=c17 "${flags[@]}" -O2 -o "$scratch/sphere" format-spec/example/sphere.c "${shared[@]}" -lm
 "$scratch/sphere" "$archive" "$("$scratch/usr/bin/brdfpack" list --json "$archive" | sed -n '1s/.*"name": "\([^"]*\)".*/\1/p')" "$scratch/sphere.ppm"
 [ "$(wc -c <"$scratch/sphere.ppm")" = $((15 + 3 * 160 * 160)) ]
 [ "$(tail -c +16 "$scratch/sphere.ppm" | od -An -v -tu1 -w3 | sort -u | wc -l)" -gt 100 ]
