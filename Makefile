@@ -66,6 +66,7 @@ help:
 	@echo "  bench-eval   load, evaluate and sample beside the raw table"
 	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
 	@echo "  stress       hundreds of adversarial materials: one table of what holds (a few minutes)"
+	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
@@ -154,6 +155,8 @@ $(BUILD)/tests/stress: $(STRESS_O) $(BUILD)/internal.a
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lgsl -lgslcblas $(LIBRARY_LIBS)
 stress: $(BUILD)/tests/stress
 	$(Q)$< $(STRESS_FLAGS)
+stress-builds: # the same decoded values from several compilers and levels?
+	$(Q)tests/stress_builds.sh $(BUILD)/builds
 
 # Faults survived: damaged archives under sanitizers, killed and starved builds, threads. FAULTS_FLAGS=--long takes longer.
 FAULTS_FLAGS ?=
@@ -244,5 +247,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval stress faults fuzz install uninstall clean FORCE
+.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults fuzz install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -27,7 +27,8 @@ for profile in paper default; do
 	"$build/asan/tests/faults" truncate few-$profile.bpk
 	"$build/asan/tests/faults" flip few-$profile.bpk
 done
-"$build/asan/tests/faults" mutate many.bpk $mutations
-"$build/tests/faults" load many.bpk $loads
+"$build/asan/tests/faults" mutate many.bpk "$mutations"
+"$build/tests/faults" load many.bpk "$loads"
 "$build/tsan/tests/faults" threads many.bpk 100
+# shellcheck disable=SC2086
 python3 "$here/faults.py" "$build/brdfpack" "$build/tests/fault_shim.so" $long
