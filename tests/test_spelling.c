@@ -31,10 +31,21 @@ static void the_nearest_spelling_is_found(void **state)
 	assert_null(guess("nickel", none));
 }
 
+static void a_beginning_is_near_but_a_typing_error_is_nearer(void **state)
+{
+	(void)state;
+	const char *const names[] = {"chrome-steel", "chroma", "gold-metallic-paint", "gold-paint", NULL};
+	assert_string_equal(guess("chrom", names), "chroma");
+	assert_string_equal(guess("Chrome-s", names), "chrome-steel");
+	assert_string_equal(guess("gold", names), "gold-metallic-paint");
+	assert_null(guess("go", names));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_nearest_spelling_is_found),
+		cmocka_unit_test(a_beginning_is_near_but_a_typing_error_is_nearer),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+enum { BEGINNING_LEAST = 3 };
+
 static unsigned char folded(char letter)
 {
 	const unsigned char byte = (unsigned char)letter;
@@ -44,12 +46,22 @@ static size_t spelling_distance(const char *a, const char *b, size_t limit)
 	return least(previous[b_count], limit);
 }
 
+/* Is `name` the beginning of `whole`? */
+static bool begins(const char *name, const char *whole)
+{
+	while (*name && folded(*name) == folded(*whole)) {
+		name++;
+		whole++;
+	}
+	return !*name;
+}
+
 void name_guess_start(struct name_guess *guess, const char *wanted)
 {
 	const size_t letters = strlen(wanted);
 	guess->wanted = wanted;
 	guess->best[0] = '\0';
-	guess->distance = letters > SPELLING_BYTES_MAX ? 0 : (letters < 6 ? 2 : letters / 3) + 1;
+	guess->limit = guess->distance = letters > SPELLING_BYTES_MAX ? 0 : (letters < 6 ? 2 : letters / 3) + 1;
 }
 
 void name_guess_offer(struct name_guess *guess, const char *candidate)
@@ -57,7 +69,9 @@ void name_guess_offer(struct name_guess *guess, const char *candidate)
 	const size_t bytes = strlen(candidate);
 	if (!guess->distance || !bytes || bytes > SPELLING_BYTES_MAX)
 		return;
-	const size_t distance = spelling_distance(guess->wanted, candidate, guess->distance);
+	size_t distance = spelling_distance(guess->wanted, candidate, guess->distance);
+	if (strlen(guess->wanted) >= BEGINNING_LEAST && begins(guess->wanted, candidate))
+		distance = least(distance, guess->limit - 1); /* as far as a guess may be */
 	if (distance < guess->distance) {
 		guess->distance = distance;
 		memcpy(guess->best, candidate, bytes + 1);

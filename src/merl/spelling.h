@@ -10,12 +10,13 @@ enum { SPELLING_BYTES_MAX = 255 };
 
 /*
  * The nearest spelling: fewest letters inserted, removed, replaced or exchanged with their
- * neighbour; ASCII case counts nothing. Start with the name that was not found, offer every name
+ * neighbour; ASCII case counts nothing. A name that begins with the wanted one (three letters or more) is
+ * near too, but less so. Start with the name that was not found, offer every name
  * there is (the first of equals wins), then ask.
  */
 struct name_guess {
 	const char *wanted; /* the caller's, for as long as the guess lives */
-	size_t distance;
+	size_t distance, limit;
 	char best[SPELLING_BYTES_MAX + 1];
 };
 void name_guess_start(struct name_guess *guess, const char *wanted);
