@@ -117,7 +117,7 @@ job_python() {
 job_valgrind() { build test CFLAGS="-O3 -g -Werror" && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }
 job_stress() {
 	build test CFLAGS="-O3 -g -Werror" || return
-	check "stress" "$logs/stress.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" STRESS_FLAGS="-g 3 -v" stress
+	check "stress" "$logs/stress.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" STRESS_FLAGS="-g 2 -q -v" stress
 }
 job_faults() {
 	build test CFLAGS="-O3 -g -Werror" || return

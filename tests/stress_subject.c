@@ -108,8 +108,11 @@ static void material_exercise(const bp_material *material, unsigned pairs, uint6
 			weight[c] = density > 0 ? a[c] * drawn[2] / density : 0;
 		out->bad += !values_fine(&density, 1) || !values_fine(weight, 3);
 		density = bp_material_pdf(material, wi, wo);
-		bp_material_albedo(material, (float)stress_uniform(&seed), a);
-		out->bad += !values_fine(&density, 1) || !values_fine(a, 3);
+		out->bad += !values_fine(&density, 1);
+		if (n == 0) { /* it integrates: one is as long as thousands of evaluations */
+			bp_material_albedo(material, (float)stress_uniform(&seed), a);
+			out->bad += !values_fine(a, 3);
+		}
 	}
 }
 
