@@ -4,48 +4,56 @@
  *
  *     f = diffuse + K f_h f_d f_phi c(u, v, w; alpha)         u, v, w = F_h, F_d, F_phi (or 1 - F, see below)
  *
- * Densities of three variables, from c = psi'''(t) (psi^-1)'(u) (psi^-1)'(v) (psi^-1)'(w), t = sum of psi^-1:
+ * A marginal is constant over a cell, so the mean of f over a cell is, exactly,
  *
- *     Frank     s = p q_u q_v q_w,  p = 1 - e^-alpha, q_u = (1 - e^-alpha u) / p
- *               c = alpha^2 s (1 + s) / (1 - s)^3 e^-alpha(u + v + w) / ((1 - e^-alpha u)(1 - e^-alpha v)(1 - e^-alpha w))
- *     Clayton   c = (1 + alpha)(1 + 2 alpha) (u v w)^-(alpha + 1) (u^-alpha + v^-alpha + w^-alpha - 2)^-(1 / alpha + 3)
+ *     f_ijk = diffuse + K cells M_ijk                         M_ijk the copula's mass between the cell's F
  *
- * alpha > 0; alpha -> 0 is independence. In three variables these families know positive dependence only, so any of
- * the axes may be turned round (u = 1 - F), which also covers the negative one. Family, turns and alpha minimise the
- * cosine-weighted error of lobe.h, with the two linear parameters at their least-squares values >= 0 (diffuse and
- * specular, as the authors have it in 2012; without the diffuse one the model does worse).
+ * (archimedean_copula.h), which stays finite in the corner where Clayton's density does not, and whose means over two axes
+ * are the third's marginal, exactly. In three variables these families know positive dependence only, so any of the
+ * axes may be turned round (u = 1 - F), which also covers the negative one.
  *
- * Marginals are the means over the other two axes of the table with its invalid cells filled (log_tensor.h).
+ * Marginals are the means over the other two axes of the table with its invalid cells filled (log_tensor.h), less an offset
+ * >= 0, the diffuse part's share of them. Family, turns, alpha and the offset minimise the cosine-weighted error of
+ * lobe.h, with the two linear parameters at their least-squares values >= 0 (diffuse and specular, as the authors
+ * have it in 2012; without the diffuse one the model does worse).
+ *
  * Per channel H + D + P + 3 float32 and one byte for family and turns; MERL: 1089 numbers and 3 bytes, 4359 bytes.
  */
 #ifndef BENCH_ARCHIMEDEAN_H
 #define BENCH_ARCHIMEDEAN_H
 
-#include "../merl/lattice.h"
-
-enum archimedean_family { ARCHIMEDEAN_FRANK, ARCHIMEDEAN_CLAYTON, ARCHIMEDEAN_FAMILIES };
+#include "archimedean_copula.h"
+#include "baseline.h"
 
 struct archimedean_channel {
 	enum archimedean_family family;
 	unsigned turned; /* bit a: axis a is turned round */
 	float alpha, diffuse, scale;
 	float *marginal[3]; /* mean 1 (all 0 for a black channel), per axis: H, D, P values */
-	double *cumulative[3]; /* F at the middle of each cell, derived from the marginal */
+	double *edge[3];    /* F where each cell begins, and 1; derived from the marginal: H + 1, D + 1, P + 1 values */
 };
 
 struct archimedean_state {
 	struct lattice_dims dims;
 	struct archimedean_channel channel[3];
 	float *marginals;
-	double *cumulatives;
+	double *edges;
 };
 
-/* The copula's density; u, v, w in (0, 1), alpha > 0. */
-double archimedean_density(enum archimedean_family family, double alpha, double u, double v, double w);
+static inline uint32_t archimedean_extent(struct lattice_dims dims, int axis)
+{
+	return axis == 0 ? dims.theta_h : axis == 1 ? dims.theta_d : dims.phi_d;
+}
 
 /* An empty state whose arrays are allocated, and what follows from its marginals. */
 bp_status archimedean_alloc(struct lattice_dims dims, struct archimedean_state **out, bp_error *error);
-void archimedean_accumulate(struct archimedean_state *state);
+void archimedean_accumulate(struct lattice_dims dims, struct archimedean_channel *channel);
 void archimedean_free(void *state); /* NULL is allowed */
+
+/* Both edges of every cell along each axis, turned where the axis is, the lower one first: H, D, P pairs one after the other. */
+void archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct copula_edge (*out)[2]);
+
+/* The baseline's fit (archimedean_fit.c). */
+bp_status archimedean_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error);
 
 #endif
