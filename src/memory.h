@@ -12,4 +12,7 @@
  */
 void memory_prefer_huge(void *block, size_t bytes);
 
+/* malloc for tables: aligned to a cache line, or, from half a huge page on, to huge pages, which are asked for. For free(). */
+void *memory_alloc(size_t bytes);
+
 #endif

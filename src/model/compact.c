@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../error.h"
+#include "../memory.h"
 
 /* A row as the blocks want it: `padded` values, those past the row's end being its first ones again. */
 struct compact_row {
@@ -182,7 +183,7 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	const float factor = table_factor(largest);
 	size_t scratch_bytes = (4 * (size_t)padded + 2 * rows * kept) * sizeof(float);
 	float *scratch = malloc(scratch_bytes);
-	t->store = table_store_alloc(t->store_bytes);
+	t->store = memory_alloc(t->store_bytes);
 	if (!scratch || !t->store) {
 		free(scratch);
 		return error_memory(error, scratch ? t->store_bytes : scratch_bytes);

@@ -46,7 +46,7 @@ struct default_model {
 	float centre[3];       /* where values of |level| 1 and of larger ones lie beyond it, in steps; and for levels whose last planes are not there, as a share of what is missing */
 	uint32_t planes;
 	uint32_t end[LAYERS_MAX];
-	struct default_level *levels;
+	struct default_level *levels; /* ordered by field and harmonic */
 	uint32_t level_count;
 };
 
@@ -58,15 +58,6 @@ void default_free(struct default_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
 uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
-
-/* Where a level stands: the field, the row theta_h * D + theta_d of its spectrum, and harmonic 2 order + kind. */
-struct default_place {
-	uint32_t field, row, kind, order;
-};
-
-/* The coefficient that a level stands for when only `layers` layers are there; 0 when they do not hold it. */
-float default_level_value(const struct default_model *model, struct lattice_dims dims, uint32_t layers,
-                          const struct default_level *level, struct default_place *place);
 
 /* default_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. */
 bp_status default_denoise(struct lattice_dims dims, float *coefficient, bool *noisy, bp_error *error);

@@ -1,21 +1,10 @@
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 #include "../error.h"
+#include "../memory.h"
 #include "compact.h"
 #include "kernels.h"
-
-void *table_store_alloc(size_t bytes)
-{
-	enum { CACHE_LINE = 64, LARGE_PAGE = 1 << 21 };
-	size_t alignment = bytes < LARGE_PAGE ? CACHE_LINE : LARGE_PAGE;
-	void *store = aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-	/* a hint: fewer page faults while filling, fewer misses of the TLB while evaluating */
-	if (store && alignment == LARGE_PAGE)
-		(void)madvise(store, bytes, MADV_HUGEPAGE);
-	return store;
-}
 
 static float largest_value(const struct expansion *e)
 {
@@ -40,7 +29,7 @@ static bp_status expanded_fill(struct table *t, const struct expansion *e, float
 {
 	t->row = (t->dims.phi_d + 1) * (uint32_t)t->channels;
 	t->store_bytes = (size_t)t->row * t->dims.theta_h * t->dims.theta_d * sizeof(uint16_t) + TABLE_SLACK_BYTES;
-	t->store = table_store_alloc(t->store_bytes);
+	t->store = memory_alloc(t->store_bytes);
 	if (!t->store)
 		return error_memory(error, t->store_bytes);
 	const float factor = table_factor(largest);

@@ -108,11 +108,9 @@ static inline double fast_exp2(double x)
 	return p * double_of_bits((bits_of_double(shifted) + 1023) << 52);
 }
 
-/* 2^x for float x clamped to [-126, 127]. Relative error at most 2e-7; the series ends at f^7. */
-static inline float fast_exp2f(float x)
+/* 2^x for float x in [-126, 127]. Relative error at most 2e-7; the series ends at f^7. */
+static inline float fast_exp2f_within(float x)
 {
-	x = x < -126 ? -126 : x;
-	x = x > 127 ? 127 : x;
 	float shifted = x + 12582912.0f; /* 1.5 2^23 */
 	float f = (x - (shifted - 12582912.0f)) * 0.693147181f;
 	float p = 1.0f / 5040;
@@ -124,6 +122,13 @@ static inline float fast_exp2f(float x)
 	p = p * f + 1;
 	p = p * f + 1;
 	return p * float_of_bits((bits_of_float(shifted) + 127) << 23);
+}
+
+/* The same, x clamped to [-126, 127]. */
+static inline float fast_exp2f(float x)
+{
+	x = x < -126 ? -126 : x;
+	return fast_exp2f_within(x > 127 ? 127 : x);
 }
 
 /*

@@ -75,6 +75,8 @@ struct fill_level {
 	uint8_t *valid;
 };
 
+struct spectrum_term;
+
 struct kernels {
 	/*
 	 * Adds the n cells of one channel of one theta_h slice to *sums: b measured, unit * e decoded, in 1/sr;
@@ -126,13 +128,22 @@ struct kernels {
 	                       float *out, size_t out_stride);
 	/* One level along one axis of n >= 2 rows of `width` values, `stride` apart, coarse rows first; scratch: n * width. */
 	void (*cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch);
-	void (*cdf97_inverse)(float *x, size_t n, size_t stride, size_t width, float *scratch);
+	/* plane[place] += value cosine, 16 values each, for every term; the steps of cdf97_plane: spectrum_inverse.h. */
+	void (*spectrum_spread)(const struct spectrum_term *terms, size_t count, const float *cosine, float *plane);
+	/*
+	 * The inverse wavelets of a plane [rows][columns][16], whose coefficients stand in their places. `half`: only cells of even row
+	 * and column come out, the others mean nothing.
+	 */
+	void (*cdf97_plane)(float *plane, size_t rows, size_t columns, unsigned levels, int half);
 
 	/* out = log2(1 + factor b) where valid, else 0. */
 	void (*default_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out);
-	/* rgb_c = max(0, offset (2^l - 1)) with l = min(40, base[c] + sum over f of rotation[f][c] field_f). */
-	void (*default_values)(const float *const field[3], size_t n, const float base[3], const float rotation[3][3], float offset,
-	                       float *const rgb[3]);
+	/*
+	 * rgb_c = max(0, offset (2^l - 1)) with l = min(40, base[c] + sum over f of rotation[f][c] field_f), for `rows` rows of `width`
+	 * cells, `stride` apart in the fields (where it is 16, of at most 16 cells) and rgb_stride apart in rgb.
+	 */
+	void (*default_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
+	                       const float rotation[3][3], float offset, float *const rgb[3], size_t rgb_stride);
 	/* field_f = sum over c of rotation[f][c] x_c, in place. */
 	void (*default_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
 	/* One row of the fill: every invalid cell becomes the weighted mean of its six neighbours; scratch holds n + 2. */

@@ -9,6 +9,7 @@
 #include "robust.inc.h"
 #include "robust_anchor.inc.h"
 #include "spectrum.inc.h"
+#include "spectrum_inverse.inc.h"
 #include "default.inc.h"
 
 const struct kernels KERNEL(kernels) = {
@@ -24,7 +25,8 @@ const struct kernels KERNEL(kernels) = {
 	.robust_sums = KERNEL(robust_sums),
 	.cosine_product = KERNEL(cosine_product),
 	.cdf97_forward = KERNEL(cdf97_forward),
-	.cdf97_inverse = KERNEL(cdf97_inverse),
+	.cdf97_plane = KERNEL(cdf97_plane),
+	.spectrum_spread = KERNEL(spectrum_spread),
 	.default_logs = KERNEL(default_logs),
 	.default_values = KERNEL(default_values),
 	.default_rotate = KERNEL(default_rotate),

@@ -14,8 +14,7 @@ struct spectrum {
 	uint32_t levels;
 	size_t even, odd;               /* harmonics of either kind; half rows of the table have as many cells */
 	size_t even_columns, odd_columns; /* the same rounded up to COLUMNS_STEP */
-	/* [cell][harmonic] and, for the inverse, [harmonic][cell] */
-	float *to_even, *to_odd, *from_even, *from_odd;
+	float *to_even, *to_odd;        /* [cell][harmonic] */
 	float *folded, *product;        /* theta_d rows of even_columns + odd_columns values each */
 	float *scratch;                 /* one line of rows for the wavelets */
 };
@@ -49,13 +48,11 @@ static void tables_fill(struct spectrum *t)
 	const uint32_t p = t->dims.phi_d;
 	for (uint32_t m = 0; m < p; m++) {
 		const double scale = sqrt((m ? 2.0 : 1.0) / p);
-		float *to = m % 2 ? t->to_odd : t->to_even, *from = m % 2 ? t->from_odd : t->from_even;
+		float *to = m % 2 ? t->to_odd : t->to_even;
 		const size_t columns = m % 2 ? t->odd_columns : t->even_columns, cells = m % 2 ? t->odd : t->even;
 		for (uint32_t k = 0; k < cells; k++) {
 			/* The cell in the middle of an odd row is its own mirror image; the fold below does not double it. */
-			float value = (float)(scale * spectrum_cosine((uint64_t)m * (2 * k + 1), p));
-			to[k * columns + m / 2] = value;
-			from[m / 2 * columns + k] = value;
+			to[k * columns + m / 2] = (float)(scale * spectrum_cosine((uint64_t)m * (2 * k + 1), p));
 		}
 	}
 }
@@ -76,12 +73,10 @@ bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_er
 	const size_t columns = t->even_columns + t->odd_columns;
 	t->to_even = calloc(t->even * t->even_columns, sizeof(float));
 	t->to_odd = calloc(t->odd * t->odd_columns, sizeof(float));
-	t->from_even = calloc(t->even * t->even_columns, sizeof(float));
-	t->from_odd = calloc(t->odd * t->odd_columns, sizeof(float));
 	t->folded = malloc(dims.theta_d * columns * sizeof(float));
 	t->product = malloc(dims.theta_d * columns * sizeof(float));
 	t->scratch = malloc(longest * dims.phi_d * sizeof(float));
-	if (!t->to_even || !t->to_odd || !t->from_even || !t->from_odd || !t->folded || !t->product || !t->scratch) {
+	if (!t->to_even || !t->to_odd || !t->folded || !t->product || !t->scratch) {
 		spectrum_free(t);
 		return error_memory(error, dims.theta_d * columns * sizeof(float));
 	}
@@ -96,8 +91,6 @@ void spectrum_free(struct spectrum *t)
 		return;
 	free(t->to_even);
 	free(t->to_odd);
-	free(t->from_even);
-	free(t->from_odd);
 	free(t->folded);
 	free(t->product);
 	free(t->scratch);
@@ -129,26 +122,6 @@ static void slice_forward(struct spectrum *t, float *slice)
 		memcpy(slice + j * p + even, t->product + j * t->odd_columns, odd * sizeof(float));
 }
 
-void spectrum_inverse_slice(struct spectrum *t, const float *row, uint32_t even, uint32_t odd, float *slice)
-{
-	const struct kernels *kernels = kernels_get();
-	const size_t p = t->dims.phi_d, rows = t->dims.theta_d;
-	float *e = t->folded, *o = t->product;
-
-	kernels->cosine_product(row, p, rows, even, t->from_even, t->even_columns, e, t->even_columns);
-	kernels->cosine_product(row + t->even, p, rows, odd, t->from_odd, t->odd_columns, o, t->odd_columns);
-	for (size_t j = 0; j < rows; j++) {
-		const float *a = e + j * t->even_columns, *b = o + j * t->odd_columns;
-		float *x = slice + j * p;
-		for (size_t k = 0; k < t->odd; k++) {
-			x[k] = a[k] + b[k];
-			x[p - 1 - k] = a[k] - b[k];
-		}
-		if (t->even > t->odd)
-			x[t->odd] = a[t->odd];
-	}
-}
-
 void spectrum_forward(struct spectrum *t, float *table)
 {
 	const struct kernels *kernels = kernels_get();
@@ -164,25 +137,5 @@ void spectrum_forward(struct spectrum *t, float *table)
 			kernels->cdf97_forward(table + j * p, rows, slice, p, t->scratch);
 		rows = (rows + 1) / 2;
 		columns = (columns + 1) / 2;
-	}
-}
-
-void spectrum_inverse_wavelets(struct spectrum *t, float *table, uint32_t even, uint32_t odd)
-{
-	const struct kernels *kernels = kernels_get();
-	const size_t p = t->dims.phi_d, slice = t->dims.theta_d * p;
-	const size_t lane[2] = {0, t->even}, width[2] = {even, odd};
-
-	for (uint32_t l = t->levels; l-- > 0;) {
-		/* Halving with rounding up l times is dividing by 2^l, rounded up. */
-		const size_t rows = (t->dims.theta_h + ((size_t)1 << l) - 1) >> l, columns = (t->dims.theta_d + ((size_t)1 << l) - 1) >> l;
-		for (int q = 0; q < 2; q++) {
-			if (!width[q])
-				continue;
-			for (size_t j = 0; j < columns; j++)
-				kernels->cdf97_inverse(table + j * p + lane[q], rows, slice, width[q], t->scratch);
-			for (size_t i = 0; i < rows; i++)
-				kernels->cdf97_inverse(table + i * slice + lane[q], columns, p, width[q], t->scratch);
-		}
 	}
 }

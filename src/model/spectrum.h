@@ -20,6 +20,7 @@
 #include "../merl/lattice.h"
 
 enum { SPECTRUM_LEVELS_MAX = 7 };
+#define SPECTRUM_GAIN 1.149604398860241f /* K of the 9/7 wavelet */
 
 /* cos(pi a / (2 P)), exact where it is 0, 1 or -1, and the same on every machine. */
 double spectrum_cosine(uint64_t a, uint32_t p);
@@ -32,19 +33,18 @@ void spectrum_free(struct spectrum *spectrum); /* NULL is allowed */
 /* Levels of the wavelet: as long as the shorter axis keeps at least 8 coarse cells, each level halving it (rounding up). */
 uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d);
 
+/* Coefficients of an axis of n cells that step l of the wavelet works on: halved l times, rounding up. */
+static inline uint32_t spectrum_extent(uint32_t n, uint32_t l)
+{
+	return (n + (1u << l) - 1) >> l;
+}
+
 static inline uint32_t spectrum_lane(uint32_t phi_d, uint32_t harmonic)
 {
 	return harmonic / 2 + (harmonic % 2 ? (phi_d + 1) / 2 : 0);
 }
 
-/* In place. */
+/* In place. The inverse: spectrum_inverse.h. */
 void spectrum_forward(struct spectrum *spectrum, float *table);
-/*
- * The inverse in two steps. First the wavelets, of which only the lanes below `even` and the first `odd` of the odd
- * ones are touched (all others must be 0); then, slice by slice of theta_h, the cosines: slice[theta_d][phi_d] from the spectrum's
- * row, which it may not overlap.
- */
-void spectrum_inverse_wavelets(struct spectrum *spectrum, float *table, uint32_t even, uint32_t odd);
-void spectrum_inverse_slice(struct spectrum *spectrum, const float *row, uint32_t even, uint32_t odd, float *slice);
 
 #endif

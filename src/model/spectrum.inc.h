@@ -1,4 +1,5 @@
 /* spectrum.inc.h: products with cosine tables, and lifting steps. See kernels.h and spectrum.h. */
+#include "spectrum.h"
 
 typedef float KERNEL(floats8) __attribute__((vector_size(32)));
 typedef float KERNEL(floats8_unaligned) __attribute__((vector_size(32), aligned(4), may_alias));
@@ -47,8 +48,6 @@ static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t row
 		}
 	}
 }
-#undef FLOATS8_AT
-#undef FLOATS8_OF
 
 /* x[i] += factor (x[i - 1] + x[i + 1]) for i = first, first + 2, ...; the ends are mirrored. Each x[i] is a row of `width`. */
 static inline void KERNEL(lift)(float *x, size_t n, size_t stride, size_t width, size_t first, float factor)
@@ -65,7 +64,6 @@ static inline void KERNEL(lift)(float *x, size_t n, size_t stride, size_t width,
 #define CDF97_B (-0.052980118572961f)
 #define CDF97_C 0.882911075530934f
 #define CDF97_D 0.443506852043971f
-#define CDF97_K 1.149604398860241f
 
 static void KERNEL(cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch)
 {
@@ -76,30 +74,11 @@ static void KERNEL(cdf97_forward)(float *x, size_t n, size_t stride, size_t widt
 	KERNEL(lift)(x, n, stride, width, 1, CDF97_C);
 	KERNEL(lift)(x, n, stride, width, 0, CDF97_D);
 	for (size_t i = 0; i < n; i++) {
-		const float *from = x + i * stride, scale = i % 2 ? 1 / CDF97_K : CDF97_K;
+		const float *from = x + i * stride, scale = i % 2 ? 1 / SPECTRUM_GAIN : SPECTRUM_GAIN;
 		float *to = scratch + (i % 2 ? low + i / 2 : i / 2) * width;
 		for (size_t q = 0; q < width; q++)
 			to[q] = from[q] * scale;
 	}
-	for (size_t i = 0; i < n; i++)
-		for (size_t q = 0; q < width; q++)
-			x[i * stride + q] = scratch[i * width + q];
-}
-
-static void KERNEL(cdf97_inverse)(float *x, size_t n, size_t stride, size_t width, float *scratch)
-{
-	const size_t low = (n + 1) / 2;
-
-	for (size_t i = 0; i < n; i++) {
-		const float *from = x + (i % 2 ? low + i / 2 : i / 2) * stride, scale = i % 2 ? CDF97_K : 1 / CDF97_K;
-		float *to = scratch + i * width;
-		for (size_t q = 0; q < width; q++)
-			to[q] = from[q] * scale;
-	}
-	KERNEL(lift)(scratch, n, width, width, 0, -CDF97_D);
-	KERNEL(lift)(scratch, n, width, width, 1, -CDF97_C);
-	KERNEL(lift)(scratch, n, width, width, 0, -CDF97_B);
-	KERNEL(lift)(scratch, n, width, width, 1, -CDF97_A);
 	for (size_t i = 0; i < n; i++)
 		for (size_t q = 0; q < width; q++)
 			x[i * stride + q] = scratch[i * width + q];

@@ -37,9 +37,6 @@ enum { TABLE_SLACK_BYTES = 32 };
 /* [0]: one channel, [1]: RGB. */
 extern const struct table_kernels table_expanded_plain[2], table_expanded_avx2[2], table_compact_plain[2], table_compact_avx2[2];
 
-/* Memory for `bytes` of table: aligned to a cache line, on large pages where the system gives them. */
-void *table_store_alloc(size_t bytes);
-
 /* What brings values up to `largest` to [0, 1]; 0 for a table that is as good as all zero. */
 static inline float table_factor(float largest)
 {

@@ -1,0 +1,239 @@
+/* spectrum_inverse.h: against FORMAT.md's steps in long double, the inverse of the forward transform, and alike on every processor. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "model/kernels.h"
+#include "model/spectrum_inverse.h"
+
+static uint64_t state = 5;
+static double uniform(void)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return (double)(state >> 11) * 0x1p-53;
+}
+
+static const struct lattice_dims DIMS[] = {{4, 4, 4}, {5, 7, 9}, {15, 16, 5}, {16, 15, 6}, {31, 33, 7}, {29, 18, 33}, {90, 30, 20}, {4, 60, 17}};
+enum { DIMS_COUNT = sizeof DIMS / sizeof *DIMS };
+
+/* All terms of a spectrum that are not 0, by harmonic. */
+static struct spectrum_term *terms_of(const struct spectrum_inverse *inverse, const float *spectrum, uint32_t *start)
+{
+	const struct lattice_dims d = inverse->dims;
+	struct spectrum_term *terms = malloc(lattice_cells(d) * sizeof *terms);
+	uint32_t n = 0;
+	for (uint32_t m = 0; m < d.phi_d; m++) {
+		start[m] = n;
+		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
+			const float value = spectrum[(size_t)r * d.phi_d + spectrum_lane(d.phi_d, m)];
+			if (value != 0)
+				terms[n++] = spectrum_term_make(inverse, r, value);
+		}
+	}
+	start[d.phi_d] = n;
+	return terms;
+}
+
+/* The table of a spectrum, block by block. */
+static float *inverse_of(struct lattice_dims d, const float *spectrum)
+{
+	const size_t rows = (size_t)d.theta_h * d.theta_d;
+	float *table = malloc(lattice_cells(d) * sizeof *table), *plane = aligned_alloc(64, rows * SPECTRUM_BLOCK * sizeof *plane);
+	struct spectrum_inverse *inverse = NULL;
+	uint32_t start[64];
+	assert_int_equal(spectrum_inverse_create(d, &inverse, NULL), BP_OK);
+	struct spectrum_term *terms = terms_of(inverse, spectrum, start);
+	for (uint32_t k = 0; k < d.phi_d; k += SPECTRUM_BLOCK) {
+		spectrum_inverse_block(inverse, terms, start, k, plane);
+		for (size_t r = 0; r < rows; r++)
+			for (uint32_t q = k; q < k + SPECTRUM_BLOCK && q < d.phi_d; q++)
+				table[r * d.phi_d + q] = plane[r * SPECTRUM_BLOCK + q - k];
+	}
+	free(terms);
+	free(plane);
+	spectrum_inverse_free(inverse);
+	return table;
+}
+
+/* FORMAT.md, "Inverse wavelets", one step of one line. */
+static void synthesis(long double *x, uint32_t n)
+{
+	static const long double factor[4] = {-0.443506852043971L, -0.882911075530934L, 0.052980118572961L, 1.586134342059924L}, k = 1.149604398860241L;
+	long double z[1024];
+	for (uint32_t i = 0; i < n; i++)
+		z[i] = i % 2 ? x[(n + 1) / 2 + i / 2] * k : x[i / 2] / k;
+	for (uint32_t s = 0; s < 4; s++)
+		for (uint32_t i = s % 2; i < n; i += 2)
+			z[i] += factor[s] * (z[i ? i - 1 : 1] + z[i + 1 < n ? i + 1 : n - 2]);
+	memcpy(x, z, n * sizeof *x);
+}
+
+static long double *slow_inverse(struct lattice_dims d, const float *spectrum)
+{
+	const uint32_t p = d.phi_d;
+	const size_t cells = lattice_cells(d);
+	long double *wavelets = malloc(cells * sizeof *wavelets), *table = calloc(cells, sizeof *table), line[1024];
+	for (size_t i = 0; i < cells; i++)
+		wavelets[i] = (long double)spectrum[i];
+	for (uint32_t l = spectrum_levels(d.theta_h, d.theta_d); l-- > 0;) {
+		const uint32_t h = (d.theta_h + (1u << l) - 1) >> l, w = (d.theta_d + (1u << l) - 1) >> l;
+		for (uint32_t q = 0; q < p; q++) {
+			for (uint32_t x = 0; x < w; x++) {
+				for (uint32_t y = 0; y < h; y++)
+					line[y] = wavelets[((size_t)y * d.theta_d + x) * p + q];
+				synthesis(line, h);
+				for (uint32_t y = 0; y < h; y++)
+					wavelets[((size_t)y * d.theta_d + x) * p + q] = line[y];
+			}
+			for (uint32_t y = 0; y < h; y++) {
+				for (uint32_t x = 0; x < w; x++)
+					line[x] = wavelets[((size_t)y * d.theta_d + x) * p + q];
+				synthesis(line, w);
+				for (uint32_t x = 0; x < w; x++)
+					wavelets[((size_t)y * d.theta_d + x) * p + q] = line[x];
+			}
+		}
+	}
+	for (size_t r = 0; r < (size_t)d.theta_h * d.theta_d; r++)
+		for (uint32_t k = 0; k < p; k++)
+			for (uint32_t m = 0; m < p; m++)
+				table[r * p + k] += sqrtl((m ? 2.0L : 1.0L) / p) * wavelets[r * p + spectrum_lane(p, m)] * cosl(acosl(-1) * m * (2 * k + 1) / (2 * p));
+	free(wavelets);
+	return table;
+}
+
+static void a_table_is_what_the_format_says_of_its_coefficients(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++)
+		for (int sparse = 0; sparse < 2; sparse++) {
+			const size_t cells = lattice_cells(DIMS[n]);
+			float *spectrum = malloc(cells * sizeof *spectrum);
+			for (size_t i = 0; i < cells; i++)
+				spectrum[i] = sparse && uniform() > 0.03 ? 0 : (float)(uniform() - 0.5);
+			float *quick = inverse_of(DIMS[n], spectrum);
+			long double *slow = slow_inverse(DIMS[n], spectrum);
+			for (size_t i = 0; i < cells; i++)
+				assert_true(fabsl((long double)quick[i] - slow[i]) < 3e-6L);
+			free(spectrum);
+			free(quick);
+			free(slow);
+		}
+}
+
+static void the_inverse_gives_the_table_back(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		const size_t cells = lattice_cells(DIMS[n]);
+		float *table = malloc(cells * sizeof *table), *spectrum = malloc(cells * sizeof *spectrum);
+		struct spectrum *forward = NULL;
+		for (size_t i = 0; i < cells; i++)
+			spectrum[i] = table[i] = (float)(uniform() - 0.5);
+		assert_int_equal(spectrum_create(DIMS[n], &forward, NULL), BP_OK);
+		spectrum_forward(forward, spectrum);
+		float *back = inverse_of(DIMS[n], spectrum);
+		for (size_t i = 0; i < cells; i++)
+			assert_true(fabsf(back[i] - table[i]) < 3e-6f);
+		spectrum_free(forward);
+		free(back);
+		free(table);
+		free(spectrum);
+	}
+}
+
+static void nothing_gives_a_table_of_zeros(void **unused)
+{
+	const struct lattice_dims d = {16, 17, 18};
+	float *spectrum = calloc(lattice_cells(d), sizeof *spectrum), *table = inverse_of(d, spectrum);
+	(void)unused;
+	for (size_t i = 0; i < lattice_cells(d); i++)
+		assert_true(table[i] == 0);
+	free(spectrum);
+	free(table);
+}
+
+static void any_cells_may_be_asked_of_a_harmonic(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		const uint32_t p = DIMS[n].phi_d;
+		struct spectrum_inverse *inverse = NULL;
+		assert_int_equal(spectrum_inverse_create(DIMS[n], &inverse, NULL), BP_OK);
+		for (uint32_t m = 0; m < p; m++)
+			for (uint32_t first = 0; first < p; first += 3)
+				for (uint32_t every = 1; every < 3; every++) {
+					float got[20];
+					spectrum_inverse_cosines(inverse, m, first, every, 20, got);
+					for (uint32_t i = 0; i < 20; i++)
+						assert_true(fabs((double)got[i] - sqrt((m ? 2.0 : 1.0) / p) * cos(M_PI * m * (first + every * i + 0.5) / p)) < 1e-7);
+				}
+		spectrum_inverse_free(inverse);
+	}
+}
+
+static void half_a_plane_is_every_second_cell_of_the_whole(void **unused)
+{
+	static const struct {
+		uint32_t rows, columns;
+	} SIZES[] = {{16, 18}, {30, 16}, {90, 90}, {17, 31}};
+	(void)unused;
+	for (size_t n = 0; n < sizeof SIZES / sizeof *SIZES; n++) {
+		const uint32_t rows = SIZES[n].rows, columns = SIZES[n].columns, levels = spectrum_levels(rows, columns);
+		const size_t bytes = (size_t)rows * columns * SPECTRUM_BLOCK * sizeof(float);
+		float *whole = aligned_alloc(64, bytes), *half = aligned_alloc(64, bytes);
+		for (size_t i = 0; i < bytes / sizeof(float); i++)
+			half[i] = whole[i] = (float)(uniform() - 0.5);
+		kernels_get()->cdf97_plane(whole, rows, columns, levels, 0);
+		kernels_get()->cdf97_plane(half, rows, columns, levels, 1);
+		for (uint32_t i = 0; i < rows; i += 2)
+			for (uint32_t j = 0; j < columns; j += 2)
+				assert_memory_equal(whole + (i * columns + j) * SPECTRUM_BLOCK, half + (i * columns + j) * SPECTRUM_BLOCK, 64);
+		free(whole);
+		free(half);
+	}
+}
+
+static void plain_and_avx2_loops_give_the_same_bits(void **unused)
+{
+	enum { ROWS = 33, COLUMNS = 18, CELLS = ROWS * COLUMNS * SPECTRUM_BLOCK, TERMS = 500 };
+	static _Alignas(64) float x[CELLS], y[CELLS];
+	struct spectrum_term terms[TERMS];
+	float cosine[SPECTRUM_BLOCK];
+	(void)unused;
+	if (!kernels_avx2_usable())
+		skip();
+	for (int i = 0; i < CELLS; i++)
+		x[i] = y[i] = (float)(uniform() - 0.5);
+	for (int i = 0; i < TERMS; i++)
+		terms[i] = (struct spectrum_term){(uint32_t)(uniform() * ROWS * COLUMNS), (float)(uniform() - 0.5)};
+	for (int i = 0; i < SPECTRUM_BLOCK; i++)
+		cosine[i] = (float)(uniform() - 0.5);
+	kernels_plain.spectrum_spread(terms, TERMS, cosine, x);
+	kernels_avx2.spectrum_spread(terms, TERMS, cosine, y);
+	assert_memory_equal(x, y, sizeof x);
+	for (int half = 0; half < 2; half++) {
+		kernels_plain.cdf97_plane(x, ROWS, COLUMNS, 2, half);
+		kernels_avx2.cdf97_plane(y, ROWS, COLUMNS, 2, half);
+		assert_memory_equal(x, y, sizeof x);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_table_is_what_the_format_says_of_its_coefficients),
+		cmocka_unit_test(the_inverse_gives_the_table_back),
+		cmocka_unit_test(nothing_gives_a_table_of_zeros),
+		cmocka_unit_test(any_cells_may_be_asked_of_a_harmonic),
+		cmocka_unit_test(half_a_plane_is_every_second_cell_of_the_whole),
+		cmocka_unit_test(plain_and_avx2_loops_give_the_same_bits),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
