@@ -15,15 +15,17 @@ void reference_fidelity(const struct lattice *truth, const struct expansion *tab
 {
 	const struct lattice_dims d = truth->dims;
 	long double log_squares = 0, cube_squares = 0, largest = 0;
-	float *cosines = malloc(lattice_cells(d) * sizeof *cosines);
+	float *cosine_slice = malloc((size_t)d.theta_d * d.phi_d * sizeof *cosine_slice);
+	struct corner_cosines *cosines;
 
-	if (!cosines || lattice_corner_cosine(d, cosines, NULL) != BP_OK)
+	if (!cosine_slice || corner_cosines_create(d, &cosines, NULL) != BP_OK)
 		abort();
-	for (uint32_t i = 0; i < d.theta_h; i++)
+	for (uint32_t i = 0; i < d.theta_h; i++) {
+		corner_cosines_slice(cosines, i, cosine_slice);
 		for (uint32_t j = 0; j < d.theta_d; j++)
 			for (uint32_t k = 0; k < d.phi_d; k++) {
 				const size_t n = lattice_index(d, i, j, k);
-				const long double cosine = cosines[n];
+				const long double cosine = cosine_slice[lattice_index(d, 0, j, k)];
 				for (int c = 0; truth->valid[n] && c < 3; c++) {
 					const long double b = truth->rgb[c][n], e = (long double)table->unit * table->rgb[c][n];
 					const long double l = log10l((e + 1e-3L) / (b + 1e-3L)), r = cbrtl(b * cosine) - cbrtl(e * cosine);
@@ -32,10 +34,12 @@ void reference_fidelity(const struct lattice *truth, const struct expansion *tab
 					largest = fmaxl(largest, fabsl(e - b) / (b + 1e-2L));
 				}
 			}
+	}
 	const long double count = 3.0L * truth->valid_count;
 	out->log_rmse = (double)sqrtl(log_squares / count);
 	out->cube_root_rmse = (double)sqrtl(cube_squares / count);
 	out->largest_relative = (double)largest;
+	free(cosine_slice);
 	free(cosines);
 }
 

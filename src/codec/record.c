@@ -1,6 +1,5 @@
 #include "record.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -109,33 +108,49 @@ static bp_status memory_fetch(void *user, uint64_t offset, uint8_t *bytes, size_
 	return BP_OK;
 }
 
-/* Figures are stored finite: a relative error beyond the range of a double is the largest double. */
-static double figure_stored(double figure)
+/* Layers that are measured in one pass over the measured table: what the previews of a usual budget and the whole are. */
+enum { MEASURED_AT_ONCE = 3, MEASURED_CELLS_MAX = 1 << 22 };
+
+/* Expands layer `l` of `decoded`, or, where there is none, decodes it from the record's own bytes. */
+static bp_status layer_expand(const struct record_head *head, const uint8_t *record, const struct model *decoded, uint32_t l,
+                              struct expansion *table, bp_error *error)
 {
-	return figure < DBL_MAX ? figure : DBL_MAX;
+	struct model *model = NULL;
+	bp_status status = BP_OK;
+	if (!decoded)
+		status = record_decode(head, l + 1, memory_fetch, (void *)(uintptr_t)record, &model, error);
+	if (!status)
+		status = model_expand(decoded ? decoded : model, l + 1, table, error);
+	model_free(model);
+	return status;
 }
 
-/* Measures every layer of `decoded`, or, where there is none, decodes every layer from the record's own bytes. */
+/* Fills in the figures of every layer. */
 static bp_status layers_measure(struct record_head *head, const uint8_t *record, const struct lattice *lattice,
                                 const struct model *decoded, bp_error *error)
 {
-	struct expansion table = { 0 };
-	bp_status status = expansion_alloc(head->dims, &table, error);
-	for (uint32_t l = 0; !status && l < head->layer_count; l++) {
-		struct fidelity *figures = &head->layers[l].fidelity;
-		struct model *model = NULL;
-		if (!decoded)
-			status = record_decode(head, l + 1, memory_fetch, (void *)(uintptr_t)record, &model, error);
+	/* A large lattice's layers one by one: their tables would take more memory than the pass is worth. */
+	const uint32_t at_once = lattice_cells(head->dims) <= MEASURED_CELLS_MAX ? MEASURED_AT_ONCE : 1;
+	struct expansion tables[MEASURED_AT_ONCE] = { 0 };
+	struct fidelity figures[MEASURED_AT_ONCE];
+	bp_status status = BP_OK;
+
+	for (uint32_t l = 0; !status && l < head->layer_count; l += at_once) {
+		uint32_t count = 0;
+		while (!status && count < at_once && l + count < head->layer_count) {
+			if (!tables[count].block)
+				status = expansion_alloc(head->dims, &tables[count], error);
+			if (!status)
+				status = layer_expand(head, record, decoded, l + count, &tables[count], error);
+			count++;
+		}
 		if (!status)
-			status = model_expand(decoded ? decoded : model, l + 1, &table, error);
-		if (!status)
-			status = fidelity_measure(lattice, &table, figures, error);
-		figures->log_rmse = figure_stored(figures->log_rmse);
-		figures->cube_root_rmse = figure_stored(figures->cube_root_rmse);
-		figures->largest_relative = figure_stored(figures->largest_relative);
-		model_free(model);
+			status = fidelity_measure_all(lattice, tables, count, figures, error);
+		for (uint32_t k = 0; !status && k < count; k++)
+			head->layers[l + k].fidelity = figures[k];
 	}
-	expansion_free(&table);
+	for (int k = 0; k < MEASURED_AT_ONCE; k++)
+		expansion_free(&tables[k]);
 	return status;
 }
 

@@ -2,6 +2,7 @@
  * horizon.c: the lattice's cosines, and from them what lies below the horizon.
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "../error.h"
 #include "lattice.h"
@@ -109,20 +110,33 @@ bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t 
 	return BP_OK;
 }
 
-bp_status lattice_corner_cosine(struct lattice_dims dims, float *cosine, bp_error *error)
-{
+struct corner_cosines {
+	struct lattice_dims dims;
 	struct cosines corner;
+};
+
+bp_status corner_cosines_create(struct lattice_dims dims, struct corner_cosines **out, bp_error *error)
+{
 	bp_status status = lattice_dims_check(dims, error);
 	if (status != BP_OK)
 		return status;
-	cosines_fill(dims, 0, 1, &corner);
-	for (uint32_t i = 0; i < dims.theta_h; i++)
-		for (uint32_t j = 0; j < dims.theta_d; j++, cosine += dims.phi_d) {
-			const double a = corner.cos_d[j] * corner.cos_h[i], q = corner.sin_d[j] * corner.sin_h[i];
-			for (uint32_t k = 0; k < dims.phi_d; k++) {
-				const double smaller = a - q * corner.cos_p[k];
-				cosine[k] = (float)(smaller > 0 ? smaller : 0);
-			}
-		}
+	*out = malloc(sizeof **out);
+	if (!*out)
+		return error_memory(error, sizeof **out);
+	(*out)->dims = dims;
+	cosines_fill(dims, 0, 1, &(*out)->corner);
 	return BP_OK;
+}
+
+void corner_cosines_slice(const struct corner_cosines *cosines, uint32_t theta_h, float *cosine)
+{
+	const struct cosines *corner = &cosines->corner;
+	const struct lattice_dims dims = cosines->dims;
+	for (uint32_t j = 0; j < dims.theta_d; j++, cosine += dims.phi_d) {
+		const double a = corner->cos_d[j] * corner->cos_h[theta_h], q = corner->sin_d[j] * corner->sin_h[theta_h];
+		for (uint32_t k = 0; k < dims.phi_d; k++) {
+			const double smaller = a - q * corner->cos_p[k];
+			cosine[k] = (float)(smaller > 0 ? smaller : 0);
+		}
+	}
 }

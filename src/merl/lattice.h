@@ -96,8 +96,7 @@ void quarter_cos_sin(double t, double *cosine, double *sine);
  * valid cell that lies wholly below, in [-sin 5 degrees, 0] (never below -0.0872). It is one float, rounded down, so that a record may
  * store it as float or double and no cell changes sides.
  *
- * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere. Fails (as
- * lattice_corner_cosine does) only for dims that are not legal.
+ * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere. Fails only for dims that are not legal.
  */
 #define LATTICE_MERL_HORIZON -0.061003 /* the database's own limit */
 double lattice_horizon_limit(const struct lattice *lattice);
@@ -105,9 +104,11 @@ bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t 
 
 /*
  * The smaller of the two cosines, max(0, min(cos theta_i, cos theta_o)) at the cell's lower corner
- * (the metrics' convention), for every cell; cosine[cells].
+ * (the metrics' convention): fills cosine[theta_d phi_d] for one index of theta_h. Freed with free(); 40 KB.
  */
-bp_status lattice_corner_cosine(struct lattice_dims dims, float *cosine, bp_error *error);
+struct corner_cosines;
+bp_status corner_cosines_create(struct lattice_dims dims, struct corner_cosines **out, bp_error *error);
+void corner_cosines_slice(const struct corner_cosines *cosines, uint32_t theta_h, float *cosine);
 
 /*
  * A decoded table: planes of float, in units of `unit` (1/sr): value = unit * rgb[c][cell].

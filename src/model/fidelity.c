@@ -7,41 +7,65 @@
 #include "../error.h"
 #include "kernels.h"
 
-bp_status fidelity_measure(const struct lattice *truth, const struct expansion *table, struct fidelity *out, bp_error *error)
+/* Adds slice i of all tables to their totals. */
+static void slice_add(const struct lattice *truth, const struct expansion *tables, uint32_t count, uint32_t i, const float *cosine,
+                      struct fidelity_sums *total)
+{
+	const size_t slice = (size_t)truth->dims.theta_d * truth->dims.phi_d, at = i * slice;
+	struct fidelity_sums sums[LAYERS_MAX];
+	struct fidelity_table table[LAYERS_MAX];
+
+	for (uint32_t t = 0; t < count; t++)
+		sums[t] = (struct fidelity_sums){.largest_relative = total[t].largest_relative};
+	for (int c = 0; c < 3; c++) {
+		for (uint32_t t = 0; t < count; t++)
+			table[t] = (struct fidelity_table){tables[t].rgb[c] + at, tables[t].unit, &sums[t]};
+		kernels_get()->fidelity_slice(truth->rgb[c] + at, truth->valid + at, cosine, slice, table, count);
+	}
+	for (uint32_t t = 0; t < count; t++) {
+		total[t].log_squares += sums[t].log_squares;
+		total[t].cube_root_squares += sums[t].cube_root_squares;
+		total[t].largest_relative = sums[t].largest_relative;
+	}
+}
+
+bp_status fidelity_measure_all(const struct lattice *truth, const struct expansion *tables, uint32_t count, struct fidelity *out,
+                               bp_error *error)
 {
 	const struct lattice_dims dims = truth->dims;
-	const size_t slice = (size_t)dims.theta_d * dims.phi_d, cells = lattice_cells(dims);
-	const struct kernels *kernels = kernels_get();
-	struct fidelity_sums total = {0, 0, 0};
+	struct fidelity_sums total[LAYERS_MAX] = {{0, 0, 0}};
+	struct corner_cosines *cosines = NULL;
 
-	if (dims.theta_h != table->dims.theta_h || dims.theta_d != table->dims.theta_d || dims.phi_d != table->dims.phi_d)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: the two tables have different extents");
+	if (count > LAYERS_MAX)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: %u tables; %d at most", count, LAYERS_MAX);
+	for (uint32_t t = 0; t < count; t++)
+		if (dims.theta_h != tables[t].dims.theta_h || dims.theta_d != tables[t].dims.theta_d || dims.phi_d != tables[t].dims.phi_d)
+			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: the two tables have different extents");
 	if (!truth->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "fidelity: no valid cell to compare");
-	float *cosine = malloc(cells * sizeof *cosine);
-	if (!cosine)
-		return error_memory(error, cells * sizeof *cosine);
-	bp_status status = lattice_corner_cosine(dims, cosine, error);
+	const size_t slice = (size_t)dims.theta_d * dims.phi_d;
+	float *cosine = malloc(slice * sizeof *cosine);
+	bp_status status = cosine ? corner_cosines_create(dims, &cosines, error) : error_memory(error, slice * sizeof *cosine);
 	if (status)
 		goto out;
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
-		struct fidelity_sums sums = {0, 0, 0};
-		const size_t at = i * slice;
-
-		for (int c = 0; c < 3; c++)
-			kernels->fidelity_slice(truth->rgb[c] + at, table->rgb[c] + at, truth->valid + at, cosine + at, slice, table->unit,
-			                        &sums);
-		total.log_squares += sums.log_squares;
-		total.cube_root_squares += sums.cube_root_squares;
-		if (sums.largest_relative > total.largest_relative)
-			total.largest_relative = sums.largest_relative;
+		corner_cosines_slice(cosines, i, cosine);
+		slice_add(truth, tables, count, i, cosine, total);
 	}
 	const double n = 3.0 * (double)truth->valid_count;
 	const double log10_of_2 = 0.30102999566398120;
-	out->log_rmse = log10_of_2 * sqrt(total.log_squares / n);
-	out->cube_root_rmse = sqrt(total.cube_root_squares / n);
-	out->largest_relative = total.largest_relative < DBL_MAX ? total.largest_relative : DBL_MAX;
+	for (uint32_t t = 0; t < count; t++) {
+		out[t].log_rmse = log10_of_2 * sqrt(total[t].log_squares / n);
+		out[t].cube_root_rmse = sqrt(total[t].cube_root_squares / n);
+		out[t].largest_relative = total[t].largest_relative < DBL_MAX ? total[t].largest_relative : DBL_MAX;
+	}
 out:
+	free(cosines);
 	free(cosine);
 	return status;
+}
+
+bp_status fidelity_measure(const struct lattice *truth, const struct expansion *table, struct fidelity *out, bp_error *error)
+{
+	return fidelity_measure_all(truth, table, 1, out, error);
 }

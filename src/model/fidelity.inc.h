@@ -3,52 +3,158 @@
 
 enum { FIDELITY_BLOCK = 64 };
 
-static void KERNEL(fidelity_slice)(const double *b, const float *e, const uint8_t *valid, const float *cosine, size_t n,
-                                   double unit, struct fidelity_sums *sums)
+/* One block of the measured table: what all decoded ones are compared with. A cell that does not count has b = keep = 0. */
+struct KERNEL(fidelity_block) {
+	double b[FIDELITY_BLOCK], keep[FIDELITY_BLOCK], cosine[FIDELITY_BLOCK];
+	double shifted[FIDELITY_BLOCK]; /* b + 1e-3 */
+	double offset[FIDELITY_BLOCK];  /* b + 1e-2 */
+	double near[FIDELITY_BLOCK];    /* b/16; 0 where 1/b might be infinite */
+	double root[FIDELITY_BLOCK];    /* cbrt(b cosine) */
+	double inverse[FIDELITY_BLOCK]; /* 1/b, where near is 0 any; set when first needed */
+	double shifted_inverse[FIDELITY_BLOCK];
+	bool has_inverse, has_shifted_inverse;
+};
+
+/* The first m cells of a block from the tables, the others made not to count. */
+static inline void KERNEL(fidelity_prepare)(const double *b, const uint8_t *valid, const float *cosine, size_t m,
+                                            struct KERNEL(fidelity_block) *t)
 {
+	double padded_b[FIDELITY_BLOCK];
+	uint8_t padded_valid[FIDELITY_BLOCK];
+	float padded_cosine[FIDELITY_BLOCK];
+
+	if (m < FIDELITY_BLOCK) {
+		for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
+			padded_b[l] = l < m ? b[l] : 0;
+			padded_valid[l] = l < m ? valid[l] : 0;
+			padded_cosine[l] = l < m ? cosine[l] : 0;
+		}
+		b = padded_b;
+		valid = padded_valid;
+		cosine = padded_cosine;
+	}
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+		t->keep[l] = valid[l] ? 1 : 0;
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
+		t->b[l] = b[l] * t->keep[l];
+		t->cosine[l] = (double)cosine[l];
+		t->shifted[l] = t->b[l] + 1e-3;
+		t->offset[l] = t->b[l] + 1e-2;
+		t->near[l] = t->b[l] > 1e-290 ? t->b[l] * (1.0 / 16) : 0;
+	}
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+		t->root[l] = fast_cbrt(t->b[l] * t->cosine[l]);
+	t->has_inverse = t->has_shifted_inverse = false;
+}
+
+/*
+ * Where d = e - b is small in a whole block, |d| <= b/16, as it is nearly everywhere in a good record, with less work and
+ * without loss however small it is:
+ *
+ *     log2((e + 1e-3)/(b + 1e-3)) = (2/ln 2) atanh s, s = d/(2 b + 2e-3 + d), |s| <= 1/31
+ *     cbrt(e) - cbrt(b) = cbrt(b) ((1 + r)^(1/3) - 1), r = d/b
+ *
+ * Both are polynomials of least relative error on these ranges: 1e-15, 2e-15.
+ */
+static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *d, double *logs, double *cubes)
+{
+	if (!t->has_inverse)
+		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+			t->inverse[l] = 1 / (t->near[l] > 0 ? t->b[l] : 1);
+	t->has_inverse = true;
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
+		double s = d[l] / (t->shifted[l] + t->shifted[l] + d[l]), z = s * s;
+		double p = 0.41286660545526166;
+		p = p * z + 0.57707758172130574;
+		p = p * z + 0.96179669401644918;
+		p = p * z + 2.8853900817779237;
+		logs[l] = s * p;
+	}
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
+		double r = d[l] * t->inverse[l];
+		double q = r * r; /* even and odd powers apart: half as long a chain */
+		double even = 0.013591770827014168, odd = -0.015937536993844745;
+		even = even * q + 0.019000804152989052;
+		odd = odd * q - 0.023471728782429886;
+		even = even * q + 0.03017832700333542;
+		odd = odd * q - 0.041152263703458002;
+		even = even * q + 0.06172839506145647;
+		odd = odd * q - 0.11111111111101468;
+		even = even * q + 0.33333333333333337;
+		cubes[l] = (even + odd * r) * (r * t->root[l]);
+	}
+}
+
+static inline void KERNEL(fidelity_far)(struct KERNEL(fidelity_block) *t, const double *e, double *logs, double *cubes)
+{
+	if (!t->has_shifted_inverse)
+		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+			t->shifted_inverse[l] = 1 / t->shifted[l];
+	t->has_shifted_inverse = true;
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+		logs[l] = fast_log2((e[l] + 1e-3) * t->shifted_inverse[l]);
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+		cubes[l] = fast_cbrt(e[l] * t->cosine[l]) - t->root[l];
+}
+
+/* Adds the block of one table, of which m cells are there. */
+static inline void KERNEL(fidelity_add)(struct KERNEL(fidelity_block) *t, const float *table, size_t m, double unit,
+                                        struct fidelity_sums *sums)
+{
+	const double largest = sums->largest_relative;
+	double e[FIDELITY_BLOCK], d[FIDELITY_BLOCK], logs[FIDELITY_BLOCK], cubes[FIDELITY_BLOCK];
+	float padded[FIDELITY_BLOCK];
 	lanes4 log_squares = {0, 0, 0, 0}, cube_squares = {0, 0, 0, 0};
-	double largest = sums->largest_relative;
+	uint64_t larger = 0, far = 0;
+
+	if (m < FIDELITY_BLOCK) {
+		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+			padded[l] = l < m ? table[l] : 0;
+		table = padded;
+	}
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
+		e[l] = unit * (double)table[l] * t->keep[l];
+		d[l] = e[l] - t->b[l];
+		const double size = d[l] < 0 ? -d[l] : d[l];
+		larger |= size > largest * t->offset[l];
+		far |= size > t->near[l];
+	}
+	if (larger) { /* seldom: the division is worth a branch */
+		double found = largest;
+		for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
+			const double relative = (d[l] < 0 ? -d[l] : d[l]) / t->offset[l];
+			found = relative > found ? relative : found;
+		}
+		sums->largest_relative = found;
+	}
+	if (far)
+		KERNEL(fidelity_far)(t, e, logs, cubes);
+	else
+		KERNEL(fidelity_close)(t, d, logs, cubes);
+	for (size_t l = 0; l < FIDELITY_BLOCK; l += 4) {
+		const lanes4 x = LANES_LOAD(logs + l), y = LANES_LOAD(cubes + l);
+		log_squares += x * x;
+		cube_squares += y * y;
+	}
+	sums->log_squares += lanes_sum(&log_squares);
+	sums->cube_root_squares += lanes_sum(&cube_squares);
+}
+
+static void KERNEL(fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n,
+                                   const struct fidelity_table *tables, size_t count)
+{
+	struct KERNEL(fidelity_block) block;
 
 	for (size_t start = 0; start < n; start += FIDELITY_BLOCK) {
-		double dl[FIDELITY_BLOCK], dc[FIDELITY_BLOCK], root[FIDELITY_BLOCK];
-		double bb[FIDELITY_BLOCK], ee[FIDELITY_BLOCK];
-		size_t m = n - start < FIDELITY_BLOCK ? n - start : FIDELITY_BLOCK;
+		const size_t m = n - start < FIDELITY_BLOCK ? n - start : FIDELITY_BLOCK;
 		unsigned any = 0;
-		uint64_t larger = 0;
 
 		for (size_t l = 0; l < m; l++)
 			any |= valid[start + l];
 		if (!any)
 			continue;
-
-		/* A cell that does not count becomes b = e = 0, whose differences are exactly 0. */
-		for (size_t l = 0; l < m; l++) {
-			double keep = valid[start + l] ? 1 : 0;
-			bb[l] = b[start + l] * keep;
-			ee[l] = unit * (double)e[start + l] * keep;
-			root[l] = cosine[start + l];
-		}
-		for (size_t l = m; l < FIDELITY_BLOCK; l++)
-			bb[l] = ee[l] = root[l] = 0;
-		for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
-			dl[l] = fast_log2((ee[l] + 1e-3) / (bb[l] + 1e-3));
-			double d = ee[l] - bb[l];
-			larger |= (d < 0 ? -d : d) > largest * (bb[l] + 1e-2);
-		}
-		if (larger) /* seldom: the division is worth a branch */
-			for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
-				double d = ee[l] - bb[l], relative = (d < 0 ? -d : d) / (bb[l] + 1e-2);
-				largest = relative > largest ? relative : largest;
-			}
-		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
-			dc[l] = fast_cbrt(bb[l] * root[l]) - fast_cbrt(ee[l] * root[l]);
-		for (size_t l = 0; l < FIDELITY_BLOCK; l += 4) {
-			lanes4 x = LANES_LOAD(dl + l), y = LANES_LOAD(dc + l);
-			log_squares += x * x;
-			cube_squares += y * y;
-		}
+		KERNEL(fidelity_prepare)(b + start, valid + start, cosine + start, m, &block);
+		for (size_t k = 0; k < count; k++)
+			KERNEL(fidelity_add)(&block, tables[k].e + start, m, tables[k].unit, tables[k].sums);
 	}
-	sums->log_squares += lanes_sum(&log_squares);
-	sums->cube_root_squares += lanes_sum(&cube_squares);
-	sums->largest_relative = largest;
 }

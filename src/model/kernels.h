@@ -22,6 +22,13 @@ struct fidelity_sums {
 	double largest_relative;
 };
 
+/* One channel of a decoded table, and where its sums go. */
+struct fidelity_table {
+	const float *e;
+	double unit;
+	struct fidelity_sums *sums;
+};
+
 /* Observations of one regression; see robust.h. excess = 1/sqrt(1 - leverage) - 1. */
 struct robust_sample {
 	const double *x, *y;
@@ -79,11 +86,11 @@ struct spectrum_term;
 
 struct kernels {
 	/*
-	 * Adds the n cells of one channel of one theta_h slice to *sums: b measured, unit * e decoded, in 1/sr;
+	 * Adds the n cells of one channel of one theta_h slice to the sums of every table: b measured, unit * e decoded, in 1/sr;
 	 * cosine >= 0; cells with valid = 0 add nothing.
 	 */
-	void (*fidelity_slice)(const double *b, const float *e, const uint8_t *valid, const float *cosine, size_t n, double unit,
-	                       struct fidelity_sums *sums);
+	void (*fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n, const struct fidelity_table *tables,
+	                       size_t count);
 
 	/* out = row column dphi (NULL: 1), of paper_expand.c; and rgb = max(0, diffuse + specular achromatic). */
 	void (*paper_row)(float row, const float *column, const float *dphi, size_t n, float *out);
