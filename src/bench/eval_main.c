@@ -203,11 +203,11 @@ static void raw_libm(const struct lattice *raw, const struct directions *d)
 
 static void raw_ours(const struct lattice *raw, const struct directions *d)
 {
-	const struct lattice_scale scale = lattice_scale_of(LATTICE_MERL);
+	const f32x4 scale = lattice_scale_of(LATTICE_MERL);
 	for (int n = 0; n < EVALUATIONS; n++) {
-		struct lattice_point at = {0, 0, 0};
+		f32x4 at = {0, 0, 0, 0};
 		direction_locate(scale, d->wi[n], d->wo[n], &at);
-		uint32_t i = (uint32_t)at.h, j = (uint32_t)at.d, k = (uint32_t)at.p;
+		uint32_t i = (uint32_t)at[0], j = (uint32_t)at[1], k = (uint32_t)at[2];
 		size_t cell = lattice_index(LATTICE_MERL, i < 89 ? i : 89, j < 89 ? j : 89, k < 179 ? k : 179);
 		sink += raw->rgb[0][cell] + raw->rgb[1][cell] + raw->rgb[2][cell];
 	}

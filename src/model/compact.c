@@ -145,14 +145,11 @@ static void block_roots(const float *root, uint32_t count, uint8_t *block)
 		low = root[k] < low ? root[k] : low;
 		high = root[k] > high ? root[k] : high;
 	}
-	uint16_t base = table_encode(low);
-	if (base && table_decode(base) > low)
-		base--;
-	float from = table_decode(base);
-	uint16_t step = table_encode((high - from) * (1.0f / 255));
-	if (from + 255 * table_decode(step) < high) /* rounded down */
-		step = (uint16_t)(step < 1 << 10 ? 1 << 10 : step + 1);
-	float width = table_decode(step), per = width > 0 ? 1 / width : 0;
+	/* the base rounded down, the step up: their range holds every value */
+	uint16_t base = (uint16_t)(bits_of_float(low) >> COMPACT_HEAD_SHIFT);
+	float from = float_of_bits((uint32_t)base << COMPACT_HEAD_SHIFT);
+	uint16_t step = (uint16_t)((bits_of_float((high - from) * (1.0f / 255)) + (1u << COMPACT_HEAD_SHIFT) - 1) >> COMPACT_HEAD_SHIFT);
+	float width = float_of_bits((uint32_t)step << COMPACT_HEAD_SHIFT), per = width > 0x1p-120f ? 1 / width : 0;
 	memcpy(block, &base, sizeof base);
 	memcpy(block + 2, &step, sizeof step);
 	for (uint32_t k = 0; k < count; k++) {
@@ -167,6 +164,13 @@ static uint32_t share_code(float share, float base, float per)
 	return (uint32_t)(code < 0 ? 0 : code > 4095 ? 4095 : (int32_t)code);
 }
 
+/* Block b of the r-th row of phi_d. */
+static uint8_t *block_at(const struct table *t, size_t r, size_t b)
+{
+	size_t i = r / t->dims.theta_d, j = r % t->dims.theta_d;
+	return t->store + i * t->slice + j / 2 * t->row + (2 * b + j % 2) * t->block_bytes;
+}
+
 bp_status compact_fill(struct table *t, const struct expansion *e, float largest, bp_error *error)
 {
 	const uint32_t period = e->dims.phi_d, blocks = (period + COMPACT_WIDTH_MAX - 1) / COMPACT_WIDTH_MAX;
@@ -176,8 +180,10 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	t->width_reciprocal = (65536 + t->width - 1) / t->width;
 	t->half_reciprocal = 1 / (float)t->half;
 	t->block_bytes = t->channels == 3 ? COMPACT_BLOCK_RGB : COMPACT_BLOCK_MONO;
-	t->row = blocks * t->block_bytes;
-	t->store_bytes = rows * t->row + TABLE_SLACK_BYTES;
+	t->row = 2 * blocks * t->block_bytes;
+	t->slice = t->row * ((e->dims.theta_d + 1) / 2);
+	const size_t cells_bytes = ((size_t)e->dims.theta_h * t->slice + TABLE_SLACK_BYTES + 7) & ~(size_t)7;
+	t->store_bytes = cells_bytes + period * sizeof *t->place;
 
 	const uint32_t padded = blocks * t->width + 1, kept = 3 * blocks;
 	const float factor = table_factor(largest);
@@ -195,11 +201,21 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	struct hats hats;
 	hats_make(t->width, t->half, &hats);
 
+	memset(t->store, 0, t->store_bytes);
+	t->place = (struct compact_place *)(void *)(t->store + cells_bytes);
+	for (uint32_t k = 0; k < period; k++) {
+		uint32_t in = k % t->width, later = in >= t->half;
+		t->place[k] = (struct compact_place){
+			.block = (uint16_t)(k / t->width * 2 * t->block_bytes),
+			.residual = (uint8_t)(COMPACT_RESIDUALS + in),
+			.share = (uint8_t)(COMPACT_SHARES + 3 * later),
+			.place = (float)(int32_t)(in - later * t->half) * t->half_reciprocal,
+		};
+	}
 	for (size_t r = 0; r < rows; r++) {
 		row_prepare(e, r, factor, dark, padded, t->channels, &row);
 		for (uint32_t b = 0; b < blocks; b++) {
-			uint8_t *block = t->store + r * t->row + b * t->block_bytes;
-			memset(block, 0, t->block_bytes);
+			uint8_t *block = block_at(t, r, b);
 			block_roots(row.root + b * t->width, t->width + 1, block);
 			for (int c = 0; c < 2 && t->channels == 3; c++) {
 				float *codes = knots[c] + (r * blocks + b) * 3;
@@ -211,16 +227,16 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 			}
 		}
 	}
-	memset(t->store + rows * t->row, 0, TABLE_SLACK_BYTES);
-	for (int c = 0; c < 2; c++) {
-		t->share_base[c] = low[c];
-		t->share_step[c] = (high[c] - low[c]) / 4095;
-	}
+	const float step[2] = {(high[0] - low[0]) / 4095, (high[1] - low[1]) / 4095};
+	const float unit = 3 * t->unit;
+	t->mix[0] = (f32x4){step[0], -step[0], 0, 0} * unit;
+	t->mix[1] = (f32x4){0, -step[1], step[1], 0} * unit;
+	t->mix[2] = (f32x4){low[0], 1 - low[0] - low[1], low[1], 0} * unit;
 	if (t->channels == 3) {
 		float per[2] = {high[0] > low[0] ? 4095 / (high[0] - low[0]) : 0, high[1] > low[1] ? 4095 / (high[1] - low[1]) : 0};
 		for (size_t n = 0; n < rows * kept; n++) {
 			uint32_t code = share_code(knots[0][n], low[0], per[0]) | share_code(knots[1][n], low[1], per[1]) << 12;
-			uint8_t *at = t->store + n / 3 * COMPACT_BLOCK_RGB + COMPACT_SHARES + 3 * (n % 3);
+			uint8_t *at = block_at(t, n / kept, n % kept / 3) + COMPACT_SHARES + 3 * (n % 3);
 			at[0] = (uint8_t)code;
 			at[1] = (uint8_t)(code >> 8);
 			at[2] = (uint8_t)(code >> 16);

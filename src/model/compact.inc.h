@@ -1,23 +1,43 @@
 /* compact.inc.h: evaluation in the compact form (compact.h). Included after expanded.inc.h, once plain and once for AVX2. */
 #include "compact.h"
 
-/* offset and steps in bytes; residual, share: bytes from the block's start; place: between the two share codes */
+/* The cell's look-up, from what is known of its phi_d. */
+static inline struct lookup KERNEL(compact_lookup)(const struct table *t, const struct cell *cell, uint32_t block, uint32_t residual,
+                                                   uint32_t share, float place)
+{
+	uint32_t odd = cell->j & 1;
+	return (struct lookup){
+		.offset = t->slice * cell->i + t->row * (cell->j >> 1) + block + odd * t->block_bytes,
+		.step_d = odd ? t->row - t->block_bytes : t->block_bytes,
+		.residual = residual,
+		.share = share,
+		.h = cell->h,
+		.d = cell->d,
+		.p = cell->p,
+		.place = place + cell->p * t->half_reciprocal,
+	};
+}
+
 static inline struct lookup KERNEL(compact_find)(const struct table *t, struct cell cell)
 {
+	const struct compact_place *at = &t->place[cell.k];
+	return KERNEL(compact_lookup)(t, &cell, at->block, at->residual, at->share, at->place);
+}
+
+/* The same without looking it up: for a loop that vectorises. */
+static inline struct lookup KERNEL(compact_find_many)(const struct table *t, struct cell cell)
+{
 	/* k < 1024, so the product with the reciprocal, rounded up, truncates to the exact quotient */
-	uint32_t k = (uint32_t)cell.k, block = k * t->width_reciprocal >> 16, in = k - block * t->width;
-	uint32_t later = in >= t->half;
-	return (struct lookup){
-		.offset = t->row * ((uint32_t)cell.j + t->dims.theta_d * (uint32_t)cell.i) + block * t->block_bytes,
-		.step_h = (uint32_t)cell.i + 1 < t->dims.theta_h ? t->row * t->dims.theta_d : 0,
-		.step_d = (uint32_t)cell.j + 1 < t->dims.theta_d ? t->row : 0,
-		.residual = COMPACT_RESIDUALS + in,
-		.share = COMPACT_SHARES + 3 * later,
-		.h = cell.h,
-		.d = cell.d,
-		.p = cell.p,
-		.place = ((float)(int32_t)(in - later * t->half) + cell.p) * t->half_reciprocal,
-	};
+	uint32_t block = cell.k * t->width_reciprocal >> 16, in = cell.k - block * t->width, later = in >= t->half;
+	return KERNEL(compact_lookup)(t, &cell, 2 * block * t->block_bytes, COMPACT_RESIDUALS + in, COMPACT_SHARES + 3 * later,
+	                              (float)(int32_t)(in - later * t->half) * t->half_reciprocal);
+}
+
+static inline uint64_t KERNEL(load64)(const uint8_t *at)
+{
+	uint64_t value;
+	memcpy(&value, at, sizeof value);
+	return value;
 }
 
 static inline uint32_t KERNEL(load32)(const uint8_t *at)
@@ -35,56 +55,192 @@ static inline uint32_t KERNEL(load16)(const uint8_t *at)
 }
 
 /*
- * The mean of the channels times its weight in each of the four rows (theta_h, theta_d), (., +1), (+1, .), (+1, +1),
- * interpolated along phi_d.
- * The first byte of a pair of residuals is the low one: this form is made and read on little-endian machines only.
+ * Lanes of eight hold two values of each of the four rows (theta_h, theta_d), (., +1), (+1, .), (+1, +1): those at two cells along
+ * phi_d, or two codes. The first byte of two is the low one: this form is made and read on little-endian machines only.
  */
-static inline f32x4 KERNEL(compact_mean)(const struct lookup *l, const uint8_t *const block[4])
+static inline void KERNEL(compact_residuals)(const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d, uint32_t at,
+                                             f32x8 *out)
 {
-	uint32_t h0 = KERNEL(load32)(block[0]), h1 = KERNEL(load32)(block[1]), h2 = KERNEL(load32)(block[2]), h3 = KERNEL(load32)(block[3]);
-	uint32_t r0 = KERNEL(load16)(block[0] + l->residual), r1 = KERNEL(load16)(block[1] + l->residual);
-	uint32_t r2 = KERNEL(load16)(block[2] + l->residual), r3 = KERNEL(load16)(block[3] + l->residual);
-	u32x4 head = {h0, h1, h2, h3}, residual = {r0, r1, r2, r3};
-	/* 2^64: see DECODE_SCALE */
-	f32x4 base = (f32x4)((head & 0xffff) << 13) * DECODE_SCALE, step = (f32x4)(head >> 16 << 13) * DECODE_SCALE;
-	f32x4 here = base + step * __builtin_convertvector((i32x4)(residual & 0xff), f32x4);
-	f32x4 next = base + step * __builtin_convertvector((i32x4)(residual >> 8), f32x4);
-	float a1 = l->h, a0 = 1 - a1, d1 = l->d, d0 = 1 - d1, p1 = l->p, p0 = 1 - p1;
-	here *= here;
-	next *= next;
-	return (here * here * p0 + next * next * p1) * ((f32x4){a0, a0, a1, a1} * (f32x4){d0, d1, d0, d1});
+#ifdef __AVX2__
+	__m128i near = _mm_cvtsi32_si128((int)KERNEL(load32)(a + at)), far = _mm_cvtsi32_si128((int)KERNEL(load32)(c + at));
+	near = _mm_insert_epi16(near, (int)KERNEL(load16)(b + at), 1);
+	far = _mm_insert_epi16(far, (int)KERNEL(load16)(d + at), 1);
+	*out = (f32x8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_unpacklo_epi32(near, far)));
+#else
+	const u32x4 pairs = {KERNEL(load16)(a + at), KERNEL(load16)(b + at), KERNEL(load16)(c + at),
+	                     KERNEL(load16)(d + at)};
+	const f32x4 here = __builtin_convertvector((i32x4)(pairs & 0xff), f32x4), next = __builtin_convertvector((i32x4)(pairs >> 8), f32x4);
+	*out = __builtin_shufflevector(here, next, 0, 4, 1, 5, 2, 6, 3, 7);
+#endif
+}
+
+/* The 24 bits of the code at `at`, and of the one after it. Eight bytes are read, from two before: they end within the block. */
+static inline void KERNEL(compact_codes)(const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d, uint32_t at, i32x8 *out)
+{
+	const uint64_t i = KERNEL(load64)(a + at - 2), j = KERNEL(load64)(b + at - 2);
+	const uint64_t k = KERNEL(load64)(c + at - 2), l = KERNEL(load64)(d + at - 2);
+#ifdef __AVX2__
+	const __m256i spread = _mm256_setr_epi8(2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15, -1, /* in each half */
+	                                        2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15, -1);
+	const __m128i near = _mm_set_epi64x((int64_t)j, (int64_t)i), far = _mm_set_epi64x((int64_t)l, (int64_t)k);
+	*out = (i32x8)_mm256_shuffle_epi8(_mm256_set_m128i(far, near), spread);
+#else
+	*out = (i32x8){(int32_t)(i >> 16 & 0xffffff), (int32_t)(i >> 40), (int32_t)(j >> 16 & 0xffffff), (int32_t)(j >> 40),
+	               (int32_t)(k >> 16 & 0xffffff), (int32_t)(k >> 40), (int32_t)(l >> 16 & 0xffffff), (int32_t)(l >> 40)};
+#endif
+}
+
+/* The 16-bit floats at the starts of the blocks, and those after them. */
+static inline void KERNEL(compact_heads)(const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d, f32x8 *base, f32x8 *step)
+{
+	const u32x4 head = {KERNEL(load32)(a), KERNEL(load32)(b), KERNEL(load32)(c), KERNEL(load32)(d)};
+#ifdef __AVX2__
+	const __m256i both = _mm256_broadcastsi128_si256((__m128i)head);
+	const __m256i low = _mm256_setr_epi8(-1, -1, 0, 1, -1, -1, 0, 1, -1, -1, 4, 5, -1, -1, 4, 5, /* rows 0, 1 in the first half */
+	                                     -1, -1, 8, 9, -1, -1, 8, 9, -1, -1, 12, 13, -1, -1, 12, 13);
+	const __m256i high = _mm256_setr_epi8(-1, -1, 2, 3, -1, -1, 2, 3, -1, -1, 6, 7, -1, -1, 6, 7,
+	                                      -1, -1, 10, 11, -1, -1, 10, 11, -1, -1, 14, 15, -1, -1, 14, 15);
+	*base = (f32x8)_mm256_srli_epi32(_mm256_shuffle_epi8(both, low), 16 - COMPACT_HEAD_SHIFT);
+	*step = (f32x8)_mm256_srli_epi32(_mm256_shuffle_epi8(both, high), 16 - COMPACT_HEAD_SHIFT);
+#else
+	const f32x4 low = (f32x4)((head & 0xffff) << COMPACT_HEAD_SHIFT), high = (f32x4)(head >> 16 << COMPACT_HEAD_SHIFT);
+	*base = __builtin_shufflevector(low, low, 0, 0, 1, 1, 2, 2, 3, 3);
+	*step = __builtin_shufflevector(high, high, 0, 0, 1, 1, 2, 2, 3, 3);
+#endif
+}
+
+/* The mean of the channels times its weight. */
+static inline void KERNEL(compact_mean)(const struct lookup *l, const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d,
+                                        f32x8 *out)
+{
+	const float h1 = l->h, h0 = 1 - h1, d1 = l->d, d0 = 1 - d1, p1 = l->p, p0 = 1 - p1;
+	const f32x4 weight = (f32x4){d0, d0, d1, d1} * (f32x4){p0, p1, p0, p1}, near = weight * h0, far = weight * h1;
+	f32x8 residual, base, step;
+	KERNEL(compact_residuals)(a, b, c, d, l->residual, &residual);
+	KERNEL(compact_heads)(a, b, c, d, &base, &step);
+	f32x8 root = base + step * residual;
+	root *= root;
+	*out = root * root * __builtin_shufflevector(near, far, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+static inline f32x4 KERNEL(halves)(const f32x8 *v)
+{
+	return __builtin_shufflevector(*v, *v, 0, 1, 2, 3) + __builtin_shufflevector(*v, *v, 4, 5, 6, 7);
 }
 
 static inline void KERNEL(compact_rgb)(const struct table *t, const struct lookup *l, float rgb[3])
 {
-	const uint8_t *const a = t->store + l->offset, *const b = a + l->step_d, *const c = a + l->step_h, *const d = c + l->step_d;
-	f32x4 mean = KERNEL(compact_mean)(l, (const uint8_t *const[4]){a, b, c, d});
-
-	/* the shares of the four rows at phi_d itself: within a cell their change is far below that of the mean */
-	u32x4 from = {KERNEL(load32)(a + l->share), KERNEL(load32)(b + l->share), KERNEL(load32)(c + l->share), KERNEL(load32)(d + l->share)};
-	u32x4 to = {KERNEL(load32)(a + l->share + 3), KERNEL(load32)(b + l->share + 3), KERNEL(load32)(c + l->share + 3),
-	            KERNEL(load32)(d + l->share + 3)};
-	f32x4 red_from = __builtin_convertvector((i32x4)(from & 4095), f32x4), red_to = __builtin_convertvector((i32x4)(to & 4095), f32x4);
-	f32x4 blue_from = __builtin_convertvector((i32x4)(from >> 12 & 4095), f32x4);
-	f32x4 blue_to = __builtin_convertvector((i32x4)(to >> 12 & 4095), f32x4);
-	f32x4 red = ((red_from + (red_to - red_from) * l->place) * t->share_step[0] + t->share_base[0]) * mean;
-	f32x4 blue = ((blue_from + (blue_to - blue_from) * l->place) * t->share_step[1] + t->share_base[1]) * mean;
-	f32x4 green = mean - red - blue;
-	float unit = 3 * t->unit, g = (green[0] + green[1]) + (green[2] + green[3]);
-	rgb[0] = ((red[0] + red[1]) + (red[2] + red[3])) * unit;
-	rgb[1] = (g > 0 ? g : 0) * unit; /* below 0 by the codes' rounding */
-	rgb[2] = ((blue[0] + blue[1]) + (blue[2] + blue[3])) * unit;
+	const uint8_t *const a = t->store + l->offset, *const b = a + l->step_d, *const c = a + t->slice, *const d = c + l->step_d;
+	const float place = l->place, rest = 1 - place;
+	f32x8 mean;
+	i32x8 codes;
+	KERNEL(compact_mean)(l, a, b, c, d, &mean);
+	KERNEL(compact_codes)(a, b, c, d, l->share, &codes);
+	/* the shares of the four rows are taken at phi_d itself: within a cell their change is far below that of the mean */
+	const f32x8 weight = (mean + __builtin_shufflevector(mean, mean, 1, 0, 3, 2, 5, 4, 7, 6)) *
+	                     (f32x8){rest, place, rest, place, rest, place, rest, place};
+	const f32x8 red = __builtin_convertvector(codes & 4095, f32x8) * weight, blue = __builtin_convertvector(codes >> 12, f32x8) * weight;
+	const f32x4 r = KERNEL(halves)(&red), g = KERNEL(halves)(&mean), u = KERNEL(halves)(&blue);
+	const f32x4 pair = __builtin_shufflevector(r, u, 0, 4, 1, 5) + __builtin_shufflevector(r, u, 2, 6, 3, 7);
+	const f32x4 codes_sum = pair + __builtin_shufflevector(pair, pair, 2, 3, 2, 3);
+	const f32x4 two = g + __builtin_shufflevector(g, g, 2, 3, 2, 3), sum = two + __builtin_shufflevector(two, two, 1, 1, 1, 1);
+	const f32x4 value = __builtin_shufflevector(codes_sum, codes_sum, 0, 0, 0, 0) * t->mix[0] +
+	                    __builtin_shufflevector(codes_sum, codes_sum, 1, 1, 1, 1) * t->mix[1] +
+	                    __builtin_shufflevector(sum, sum, 0, 0, 0, 0) * t->mix[2];
+	const f32x4 out = max_x4(value, (f32x4){0, 0, 0, 0}); /* green below 0 by the codes' rounding */
+	rgb[0] = out[0];
+	rgb[1] = out[1];
+	rgb[2] = out[2];
 }
 
 static inline void KERNEL(compact_mono)(const struct table *t, const struct lookup *l, float rgb[3])
 {
-	const uint8_t *const a = t->store + l->offset, *const c = a + l->step_h;
-	f32x4 mean = KERNEL(compact_mean)(l, (const uint8_t *const[4]){a, a + l->step_d, c, c + l->step_d});
-	rgb[0] = rgb[1] = rgb[2] = ((mean[0] + mean[1]) + (mean[2] + mean[3])) * t->unit;
+	const uint8_t *const a = t->store + l->offset, *const c = a + t->slice;
+	f32x8 mean;
+	KERNEL(compact_mean)(l, a, a + l->step_d, c, c + l->step_d, &mean);
+	const f32x4 m = KERNEL(halves)(&mean);
+	rgb[0] = rgb[1] = rgb[2] = ((m[0] + m[2]) + (m[1] + m[3])) * t->unit;
 }
 
-TABLE_FORMS(compact_rgb, KERNEL(compact_find), KERNEL(compact_rgb), 1)
-TABLE_FORMS(compact_mono, KERNEL(compact_find), KERNEL(compact_mono), 1)
+/* What many look-ups read, by row (as the lanes above): scattered bytes first, then loops that vectorise. */
+struct compact_gathered {
+	uint32_t head[4][BLOCK], residual[4][BLOCK]; /* the residuals in the low two bytes */
+	uint32_t from[4][BLOCK], to[4][BLOCK];       /* the codes in the high 24 bits */
+};
+
+static inline void KERNEL(compact_gather)(const struct table *t, const struct lookups *l, const struct lookups *next, struct compact_gathered *out)
+{
+	for (size_t m = 0; m < l->count; m++) {
+		KERNEL(fetch)(t, next, m, 1, true);
+		const uint8_t *block[4] = {t->store + l->offset[m]};
+		const uint32_t residual = l->residual[m], share = l->share[m];
+		block[1] = block[0] + l->step_d[m];
+		block[2] = block[0] + t->slice;
+		block[3] = block[2] + l->step_d[m];
+		for (int r = 0; r < 4; r++) {
+			out->head[r][m] = KERNEL(load32)(block[r]);
+			out->residual[r][m] = KERNEL(load16)(block[r] + residual);
+			out->from[r][m] = KERNEL(load32)(block[r] + share - 1);
+			out->to[r][m] = KERNEL(load32)(block[r] + share + 2);
+		}
+	}
+}
+
+/* Of one row: the mean times its weight at the two cells, and the weighted sums of codes. */
+struct compact_row_value {
+	float here, next, red_from, red_to, blue_from, blue_to;
+};
+
+static inline struct compact_row_value KERNEL(compact_row_value)(uint32_t head, uint32_t residual, uint32_t from, uint32_t to,
+                                                                 float weight_here, float weight_next, float place)
+{
+	float base = float_of_bits((head & 0xffff) << COMPACT_HEAD_SHIFT), step = float_of_bits(head >> 16 << COMPACT_HEAD_SHIFT);
+	float here = base + step * (float)(int32_t)(residual & 0xff), next = base + step * (float)(int32_t)(residual >> 8);
+	here *= here;
+	next *= next;
+	here = here * here * weight_here;
+	next = next * next * weight_next;
+	float mean = here + next, weight_from = mean * (1 - place), weight_to = mean * place;
+	return (struct compact_row_value){here,
+	                                  next,
+	                                  (float)(int32_t)(from >> 8 & 4095) * weight_from,
+	                                  (float)(int32_t)(to >> 8 & 4095) * weight_to,
+	                                  (float)(int32_t)(from >> 20) * weight_from,
+	                                  (float)(int32_t)(to >> 20) * weight_to};
+}
+
+/* compact_rgb for many, in the same order of operations. */
+static inline void KERNEL(compact_rgb_values)(const struct table *t, const struct lookups *l, const struct lookups *next, float *restrict red,
+                                              float *restrict green, float *restrict blue)
+{
+	const float mix[3][3] = {{t->mix[0][0], t->mix[0][1], t->mix[0][2]}, {t->mix[1][0], t->mix[1][1], t->mix[1][2]},
+	                         {t->mix[2][0], t->mix[2][1], t->mix[2][2]}};
+	struct compact_gathered in;
+	KERNEL(compact_gather)(t, l, next, &in);
+	for (size_t m = 0, n = l->count; m < n; m++) {
+		float h1 = l->h[m], h0 = 1 - h1, d1 = l->d[m], d0 = 1 - d1, p1 = l->p[m], p0 = 1 - p1, place = l->place[m];
+		struct compact_row_value a, b, c, d;
+		a = KERNEL(compact_row_value)(in.head[0][m], in.residual[0][m], in.from[0][m], in.to[0][m], d0 * p0 * h0, d0 * p1 * h0, place);
+		b = KERNEL(compact_row_value)(in.head[1][m], in.residual[1][m], in.from[1][m], in.to[1][m], d1 * p0 * h0, d1 * p1 * h0, place);
+		c = KERNEL(compact_row_value)(in.head[2][m], in.residual[2][m], in.from[2][m], in.to[2][m], d0 * p0 * h1, d0 * p1 * h1, place);
+		d = KERNEL(compact_row_value)(in.head[3][m], in.residual[3][m], in.from[3][m], in.to[3][m], d1 * p0 * h1, d1 * p1 * h1, place);
+		float r = ((a.red_from + c.red_from) + (b.red_from + d.red_from)) + ((a.red_to + c.red_to) + (b.red_to + d.red_to));
+		float u = ((a.blue_from + c.blue_from) + (b.blue_from + d.blue_from)) + ((a.blue_to + c.blue_to) + (b.blue_to + d.blue_to));
+		float g = ((a.here + c.here) + (b.here + d.here)) + ((a.next + c.next) + (b.next + d.next));
+		float value[3];
+		for (int k = 0; k < 3; k++) {
+			value[k] = r * mix[0][k] + u * mix[1][k] + g * mix[2][k];
+			value[k] = value[k] > 0 ? value[k] : 0;
+		}
+		red[m] = value[0];
+		green[m] = value[1];
+		blue[m] = value[2];
+	}
+}
+
+TABLE_VALUES(compact_mono_values, KERNEL(compact_mono), 1, 1)
+TABLE_FORMS(compact_rgb, KERNEL(compact_find), KERNEL(compact_find_many), KERNEL(compact_rgb), KERNEL(compact_rgb_values), 1, 1)
+TABLE_FORMS(compact_mono, KERNEL(compact_find), KERNEL(compact_find_many), KERNEL(compact_mono), KERNEL(compact_mono_values), 1, 1)
 
 const struct table_kernels KERNEL(table_compact)[2] = {
 	{KERNEL(compact_mono_evaluate), KERNEL(compact_mono_nearest), KERNEL(compact_mono_batch)},

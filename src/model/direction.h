@@ -12,8 +12,12 @@
  *
  *     h = H sqrt(theta_h / (pi/2)) in [0, H]   d = D theta_d / (pi/2) in [0, D]   p = P phi_d / pi in [0, P]
  *
- * Everything here is inline: the evaluation kernels are compiled once plain and once for AVX2,
- * and the loops over it vectorise. The arithmetic is the same in every form.
+ * Each arctangent takes the squares of its arguments, t = y^2/x^2: one division for all three, and
+ * the root of t runs beside the polynomial in t.
+ *
+ * Everything here is inline: the evaluation kernels are compiled once plain and once for AVX2. For
+ * loops over many pairs there are scalar functions, which vectorise; for one pair direction_locate
+ * with its vectors of four. The arithmetic is the same in every form.
  */
 #ifndef MODEL_DIRECTION_H
 #define MODEL_DIRECTION_H
@@ -29,43 +33,84 @@ struct lattice_point {
 	float h, d, p;
 };
 
-/* The lattice's extents, as the arithmetic wants them. */
-struct lattice_scale {
-	float h, d, p;
-};
+/*
+ * (2/pi) atan(t)/t for q = t^2 in [0, 1]: Chebyshev fit of degree 7; with its rounding the relative error is below 4e-7.
+ * In pairs, not by Horner's rule: a single evaluation waits for it, and this takes half as long.
+ */
+#define QUARTER_TURNS_7 -0.00290285377f
+#define QUARTER_TURNS_6 0.0151391486f
+#define QUARTER_TURNS_5 -0.0374521837f
+#define QUARTER_TURNS_4 0.0628271475f
+#define QUARTER_TURNS_3 -0.0891477168f
+#define QUARTER_TURNS_2 0.127113625f
+#define QUARTER_TURNS_1 -0.212196916f
+#define QUARTER_TURNS_0 0.636619687f
 
-static inline struct lattice_scale lattice_scale_of(struct lattice_dims dims)
+static inline float quarter_turns_polynomial(float q)
 {
-	return (struct lattice_scale){(float)dims.theta_h, (float)dims.theta_d, (float)dims.phi_d};
+	float q2 = q * q;
+	return ((QUARTER_TURNS_7 * q + QUARTER_TURNS_6) * q2 + (QUARTER_TURNS_5 * q + QUARTER_TURNS_4)) * (q2 * q2) +
+	       ((QUARTER_TURNS_3 * q + QUARTER_TURNS_2) * q2 + (QUARTER_TURNS_1 * q + QUARTER_TURNS_0));
 }
-
-/* (2/pi) atan(t)/t for q = t^2 in [0, 1]: Chebyshev fit of degree 7; with its rounding the relative error is below 3e-7. */
-#define QUARTER_TURNS_POLYNOMIAL(q)                                                                                            \
-	(((((((-0.00290285377f * (q) + 0.0151391486f) * (q) - 0.0374521837f) * (q) + 0.0628271475f) * (q) - 0.0891477168f) * (q) + \
-	   0.127113625f) * (q) - 0.212196916f) * (q) + 0.636619687f)
 
 /* (2/pi) atan2(y, x) for x, y >= 0, in [0, 1]; 0 for (0, 0). */
 static inline float quarter_turns(float y, float x)
 {
 	float low = y > x ? x : y, high = y > x ? y : x;
 	float t = low / (high > FLT_MIN ? high : FLT_MIN), q = t * t;
-	float a = QUARTER_TURNS_POLYNOMIAL(q) * t;
+	float a = quarter_turns_polynomial(q) * t;
 	return fabsf((y > x ? 1.0f : 0.0f) - a); /* 1 - a or a, without a branch */
+}
+
+/* The same from y^2 and x^2: the square root runs beside the polynomial, not before the division. */
+static inline float quarter_turns_of_squares(float y, float x)
+{
+	float low = y > x ? x : y, high = y > x ? y : x;
+	float q = low / (high > FLT_MIN ? high : FLT_MIN);
+	float a = quarter_turns_polynomial(q) * sqrtf(q);
+	return fabsf((y > x ? 1.0f : 0.0f) - a);
 }
 
 typedef float f32x4 __attribute__((vector_size(16)));
 typedef int32_t i32x4 __attribute__((vector_size(16)));
 #define SELECT_X4(mask, yes, no) ((f32x4)(((i32x4)(yes) & (mask)) | ((i32x4)(no) & ~(mask))))
 
-/* The same for four at once, to the bit. */
-static inline f32x4 quarter_turns_x4(f32x4 y, f32x4 x)
+/* Lane by lane a < b ? a : b, a > b ? a : b, the root and the magnitude: one instruction each where there is one. */
+#ifdef __SSE2__
+#include <emmintrin.h>
+static inline f32x4 min_x4(f32x4 a, f32x4 b) { return (f32x4)_mm_min_ps((__m128)a, (__m128)b); }
+static inline f32x4 max_x4(f32x4 a, f32x4 b) { return (f32x4)_mm_max_ps((__m128)a, (__m128)b); }
+static inline f32x4 sqrt_x4(f32x4 a) { return (f32x4)_mm_sqrt_ps((__m128)a); }
+#else
+static inline f32x4 min_x4(f32x4 a, f32x4 b) { return SELECT_X4(a < b, a, b); }
+static inline f32x4 max_x4(f32x4 a, f32x4 b) { return SELECT_X4(a > b, a, b); }
+static inline f32x4 sqrt_x4(f32x4 a) { return (f32x4){sqrtf(a[0]), sqrtf(a[1]), sqrtf(a[2]), sqrtf(a[3])}; }
+#endif
+static inline f32x4 abs_x4(f32x4 a) { return (f32x4)((i32x4)a & 0x7fffffff); }
+
+/* Whether a comparison holds in all lanes. */
+#ifdef __SSE2__
+static inline bool all_x4(i32x4 mask) { return _mm_movemask_ps((__m128)mask) == 15; }
+#else
+static inline bool all_x4(i32x4 mask) { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
+#endif
+
+/* What the three arctangents in quarter turns are multiplied by: (H^2, D, P/2, 0), before the root of the first is taken. */
+static inline f32x4 lattice_scale_of(struct lattice_dims dims)
 {
-	const f32x4 least = {FLT_MIN, FLT_MIN, FLT_MIN, FLT_MIN};
-	i32x4 steep = y > x;
-	f32x4 low = SELECT_X4(steep, x, y), high = SELECT_X4(steep, y, x);
-	f32x4 t = low / SELECT_X4(high > least, high, least), q = t * t;
-	f32x4 a = QUARTER_TURNS_POLYNOMIAL(q) * t;
-	return SELECT_X4(steep, 1 - a, a);
+	return (f32x4){(float)dims.theta_h * (float)dims.theta_h, (float)dims.theta_d, 0.5f * (float)dims.phi_d, 0};
+}
+
+/* FLT_MIN, 1 and the polynomial's coefficients, in all lanes: in memory, where compilers would rather spread them anew each time. */
+extern const f32x4 quarter_turns_x4[10] __attribute__((visibility("hidden")));
+
+/* quarter_turns_of_squares for four at once, to the bit. */
+static inline f32x4 quarter_turns_of_squares_x4(f32x4 y, f32x4 x)
+{
+	const f32x4 *c = quarter_turns_x4;
+	f32x4 q = min_x4(x, y) / max_x4(max_x4(y, x), c[0]), q2 = q * q;
+	f32x4 a = (((c[2] * q + c[3]) * q2 + (c[4] * q + c[5])) * (q2 * q2) + ((c[6] * q + c[7]) * q2 + (c[8] * q + c[9]))) * sqrt_x4(q);
+	return abs_x4((f32x4)((i32x4)c[1] & (y > x)) - a);
 }
 
 /* Squared length that still counts as 1: what rounding to float leaves of a normalised vector. */
@@ -84,51 +129,64 @@ static inline bool direction_usable(float z_i, float squared_i, float z_o, float
 	return (z_i > 0) & (z_o > 0) & (squared_i < FLT_MAX) & (squared_o < FLT_MAX) & (squared_i > FLT_MIN) & (squared_o > FLT_MIN);
 }
 
-/* Arguments (y, x) of the three arctangents, of unit vectors; phi_d's signs are split off. */
+/* Squares of the arguments (y, x) of the three arctangents, of unit vectors; phi_d's signs are split off. */
 struct direction_arguments {
 	float y[3], x[3]; /* theta_h, theta_d, |phi_d| */
-	float reflected;  /* 1: phi_d = pi - what [2] gives; else 0 */
+	bool reflected;   /* phi_d = pi - what [2] gives */
 };
 
 static inline struct direction_arguments direction_arguments(float ix, float iy, float iz, float ox, float oy, float oz)
 {
 	float sx = ix + ox, sy = iy + oy, sz = iz + oz;
 	float dx = ix - ox, dy = iy - oy, dz = iz - oz;
-	float ring = sx * sx + sy * sy;
-	float s = sqrtf(ring + sz * sz), d = sqrtf(dx * dx + dy * dy + dz * dz);
-	bool at_pole = ring == 0;
-	float y = at_pole ? dy : sx * dy - sy * dx, x = at_pole ? dx : -dz * s;
-	return (struct direction_arguments){
-		{sqrtf(ring), d, fabsf(y)}, {sz, s, fabsf(x)},
-		/*
-		 * 1 where the signs differ; on the axes (one of them 0) both ways give the same angle mod pi. By bits,
-		 * because compilers make a branch of it otherwise, which no predictor can guess.
-		 */
-		float_of_bits((0 - ((bits_of_float(y) ^ bits_of_float(x)) >> 31)) & 0x3f800000)};
+	float ring = sx * sx + sy * sy, up = sz * sz, s = ring + up, d = (dx * dx + dy * dy) + dz * dz;
+	bool at_pole = ring < FLT_MIN;
+	float y = at_pole ? dy : sx * dy - sy * dx, x = at_pole ? -dx : dz;
+	/* on the axes (x or y is 0) both ways give the same angle mod pi */
+	return (struct direction_arguments){{ring, d, y * y}, {up, s, x * x * (at_pole ? 1 : s)}, y * x > 0};
 }
 
 /* The point, from the three arctangents in quarter turns. */
-static inline struct lattice_point direction_point(struct lattice_scale scale, float theta_h, float theta_d, float phi_d, float reflected)
+static inline struct lattice_point direction_point(const float scale[3], float theta_h, float theta_d, float phi_d, bool reflected)
 {
-	/* no branch on a coin toss: |1 - x| for the reflected, |0 - x| for the others */
-	return (struct lattice_point){sqrtf(theta_h) * scale.h, theta_d * scale.d, fabsf(reflected - 0.5f * phi_d) * scale.p};
+	return (struct lattice_point){sqrtf(theta_h * scale[0]), theta_d * scale[1], fabsf((reflected ? 2 * scale[2] : 0) - phi_d * scale[2])};
 }
 
 /* One pair of directions. Returns false, and leaves *out unset, where direction_usable says so. */
 bool direction_to_lattice(struct lattice_dims dims, const float wi[3], const float wo[3], struct lattice_point *out);
 
-/* The same inline, for the kernels. */
-static inline bool direction_locate(struct lattice_scale scale, const float wi[3], const float wo[3], struct lattice_point *out)
+/* The same inline, as a vector (h, d, p, 0): for the kernels. Few operations, because a single look-up waits for all of them. */
+static inline bool direction_locate(f32x4 scale, const float wi[3], const float wo[3], f32x4 *out)
 {
-	float squared_i = wi[0] * wi[0] + wi[1] * wi[1] + wi[2] * wi[2];
-	float squared_o = wo[0] * wo[0] + wo[1] * wo[1] + wo[2] * wo[2];
-	if (!direction_usable(wi[2], squared_i, wo[2], squared_o))
-		return false;
-	float ni = direction_normaliser(squared_i), no = direction_normaliser(squared_o);
-	struct direction_arguments a =
-		direction_arguments(wi[0] * ni, wi[1] * ni, wi[2] * ni, wo[0] * no, wo[1] * no, wo[2] * no);
-	f32x4 turns = quarter_turns_x4((f32x4){a.y[0], a.y[1], a.y[2], 0}, (f32x4){a.x[0], a.x[1], a.x[2], 0});
-	*out = direction_point(scale, turns[0], turns[1], turns[2], a.reflected);
+	const f32x4 none = {0, 0, 0, 0}, slack = {DIRECTION_UNIT_SLACK, DIRECTION_UNIT_SLACK, 0, 0}, one = {1, 1, 0, 0};
+	f32x4 i = {wi[0], wi[1], wi[2], 0}, o = {wo[0], wo[1], wo[2], 0}, s, d, flat, up, length;
+	for (bool again = false;; again = true) {
+		s = i + o;
+		d = i - o;
+		/* sums over x, y, z of the squares of i, o, s, d at once */
+		const f32x4 ii = i * i, oo = o * o, ss = s * s, dd = d * d;
+		const f32x4 io = __builtin_shufflevector(ii, oo, 0, 4, 1, 5), sd = __builtin_shufflevector(ss, dd, 0, 4, 1, 5);
+		flat = __builtin_shufflevector(io, sd, 0, 1, 4, 5) + __builtin_shufflevector(io, sd, 2, 3, 6, 7);
+		up = __builtin_shufflevector(__builtin_shufflevector(ii, oo, 2, 6, 3, 7), __builtin_shufflevector(ss, dd, 2, 6, 3, 7), 0, 1, 4, 5);
+		length = flat + up;
+		/* |i|^2 and |o|^2 nearly 1, -i.z and -o.z below 0 */
+		const f32x4 off = abs_x4(length - one), z = none - __builtin_shufflevector(i, o, 2, 6, 3, 7);
+		if (again || all_x4(__builtin_shufflevector(off, z, 0, 1, 4, 5) < slack))
+			break;
+		if (!direction_usable(wi[2], length[0], wo[2], length[1]))
+			return false;
+		i *= direction_normaliser(length[0]);
+		o *= direction_normaliser(length[1]);
+	}
+	const f32x4 cross = s * __builtin_shufflevector(d, d, 1, 0, 2, 3);
+	const bool at_pole = flat[2] < FLT_MIN;
+	const float y = at_pole ? d[1] : cross[0] - cross[1], x = at_pole ? -d[0] : d[2];
+	const f32x4 top = {flat[2], length[3], y * y, 0}, bottom = {up[2], length[2], x * x * (at_pole ? 1 : length[2]), 1};
+	const i32x4 reflected = (f32x4){0, 0, y * x, 0} > none;
+	f32x4 turns = quarter_turns_of_squares_x4(top, bottom) * scale;
+	f32x4 at = abs_x4((f32x4)((i32x4)(scale + scale) & reflected) - turns);
+	at[0] = sqrtf(turns[0]);
+	*out = at;
 	return true;
 }
 

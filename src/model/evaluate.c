@@ -28,6 +28,7 @@ static float largest_value(const struct expansion *e)
 static bp_status expanded_fill(struct table *t, const struct expansion *e, float largest, bp_error *error)
 {
 	t->row = (t->dims.phi_d + 1) * (uint32_t)t->channels;
+	t->slice = t->row * t->dims.theta_d;
 	t->store_bytes = (size_t)t->row * t->dims.theta_h * t->dims.theta_d * sizeof(uint16_t) + TABLE_SLACK_BYTES;
 	t->store = memory_alloc(t->store_bytes);
 	if (!t->store)
@@ -64,6 +65,8 @@ bp_status table_build(const struct expansion *expansion, enum table_form form, i
 	t->channels = channels;
 	t->dims = expansion->dims;
 	t->scale = lattice_scale_of(t->dims);
+	t->top = (f32x4){(float)t->dims.theta_h - 1, (float)t->dims.theta_d - 1, (float)t->dims.phi_d, 0};
+	t->inner = t->top - (f32x4){0.5f, 0.5f, 0.5f, 0};
 	float largest = largest_value(expansion);
 	double unit = largest * expansion->unit;
 	t->unit = (float)(unit < TABLE_LARGEST ? unit : TABLE_LARGEST);

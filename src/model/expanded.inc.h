@@ -14,6 +14,7 @@
 
 typedef uint16_t u16x8 __attribute__((vector_size(16)));
 typedef uint32_t u32x8 __attribute__((vector_size(32)));
+typedef int32_t i32x8 __attribute__((vector_size(32)));
 typedef float f32x8 __attribute__((vector_size(32)));
 typedef uint16_t u16x4 __attribute__((vector_size(8)));
 typedef uint32_t u32x4 __attribute__((vector_size(16)));
@@ -23,17 +24,15 @@ typedef uint32_t u32x4 __attribute__((vector_size(16)));
 static inline struct lookup KERNEL(expanded_find)(const struct table *t, struct cell cell)
 {
 	return (struct lookup){
-		.offset = t->row * ((uint32_t)cell.j + t->dims.theta_d * (uint32_t)cell.i) + (uint32_t)t->channels * (uint32_t)cell.k,
-		.step_h = (uint32_t)cell.i + 1 < t->dims.theta_h ? t->row * t->dims.theta_d : 0,
-		.step_d = (uint32_t)cell.j + 1 < t->dims.theta_d ? t->row : 0,
+		.offset = t->slice * cell.i + t->row * cell.j + (uint32_t)t->channels * cell.k,
 		.h = cell.h,
 		.d = cell.d,
 		.p = cell.p,
 	};
 }
 
-/* A vector holds R G B at phi_d, R G B at the next phi_d, and two values that are not used. */
-static inline void KERNEL(add_row)(f32x8 *sum, const uint16_t *cell, float weight)
+/* R G B at phi_d, R G B at the next phi_d, and two values that are not used; times a weight. By pointer, as in vector.h. */
+static inline void KERNEL(row)(const uint16_t *cell, float weight, f32x8 *out)
 {
 	u16x8 packed;
 	memcpy(&packed, cell, sizeof packed);
@@ -42,38 +41,41 @@ static inline void KERNEL(add_row)(f32x8 *sum, const uint16_t *cell, float weigh
 #else
 	u32x8 wide = __builtin_convertvector(packed, u32x8);
 #endif
-	*sum += (f32x8)(wide << 13) * weight;
+	*out = (f32x8)(wide << 13) * weight;
 }
 
 static inline void KERNEL(expanded_rgb)(const struct table *t, const struct lookup *l, float rgb[3])
 {
-	const uint16_t *cell = (const uint16_t *)(const void *)t->store + l->offset;
-	float h1 = l->h * DECODE_SCALE, h0 = DECODE_SCALE - h1, d1 = l->d, d0 = 1 - d1, p1 = l->p, p0 = 1 - p1;
-	f32x8 sum = {0};
-	KERNEL(add_row)(&sum, cell, h0 * d0);
-	KERNEL(add_row)(&sum, cell + l->step_d, h0 * d1);
-	KERNEL(add_row)(&sum, cell + l->step_h, h1 * d0);
-	KERNEL(add_row)(&sum, cell + l->step_h + l->step_d, h1 * d1);
-	sum *= (f32x8){p0, p0, p0, p1, p1, p1, 0, 0};
-	rgb[0] = (sum[0] + sum[3]) * t->unit;
-	rgb[1] = (sum[1] + sum[4]) * t->unit;
-	rgb[2] = (sum[2] + sum[5]) * t->unit;
+	const uint16_t *cell = (const uint16_t *)(const void *)t->store + l->offset, *above = cell + t->slice;
+	float h1 = l->h * DECODE_SCALE, h0 = DECODE_SCALE - h1, d1 = l->d, d0 = 1 - d1, p1 = l->p * t->unit, p0 = t->unit - p1;
+	f32x8 a, b, c, d;
+	KERNEL(row)(cell, h0 * d0, &a);
+	KERNEL(row)(cell + t->row, h0 * d1, &b);
+	KERNEL(row)(above, h1 * d0, &c);
+	KERNEL(row)(above + t->row, h1 * d1, &d);
+	const f32x8 sum = (a + b) + (c + d);
+	f32x4 low = __builtin_shufflevector(sum, sum, 0, 1, 2, 3) * p0, high = __builtin_shufflevector(sum, sum, 3, 4, 5, 6) * p1;
+	f32x4 value = low + high;
+	rgb[0] = value[0];
+	rgb[1] = value[1];
+	rgb[2] = value[2];
 }
 
 static inline void KERNEL(expanded_mono)(const struct table *t, const struct lookup *l, float rgb[3])
 {
-	const uint16_t *a = (const uint16_t *)(const void *)t->store + l->offset, *b = a + l->step_d;
-	const uint16_t *c = a + l->step_h, *d = b + l->step_h;
-	float h1 = l->h * DECODE_SCALE, h0 = DECODE_SCALE - h1, d1 = l->d, d0 = 1 - d1, p1 = l->p, p0 = 1 - p1;
+	const uint16_t *a = (const uint16_t *)(const void *)t->store + l->offset, *b = a + t->row, *c = a + t->slice, *d = b + t->slice;
+	float h1 = l->h * DECODE_SCALE, h0 = DECODE_SCALE - h1, d1 = l->d, d0 = 1 - d1, p1 = l->p * t->unit, p0 = t->unit - p1;
 	u16x4 low = {a[0], a[1], b[0], b[1]}, high = {c[0], c[1], d[0], d[1]};
 	f32x4 weight = {d0, d0, d1, d1};
 	f32x4 sum = (f32x4)(__builtin_convertvector(low, u32x4) << 13) * (h0 * weight);
 	sum += (f32x4)(__builtin_convertvector(high, u32x4) << 13) * (h1 * weight);
-	rgb[0] = rgb[1] = rgb[2] = ((sum[0] + sum[2]) * p0 + (sum[1] + sum[3]) * p1) * t->unit;
+	rgb[0] = rgb[1] = rgb[2] = (sum[0] + sum[2]) * p0 + (sum[1] + sum[3]) * p1;
 }
 
-TABLE_FORMS(expanded_rgb, KERNEL(expanded_find), KERNEL(expanded_rgb), sizeof(uint16_t))
-TABLE_FORMS(expanded_mono, KERNEL(expanded_find), KERNEL(expanded_mono), sizeof(uint16_t))
+TABLE_VALUES(expanded_rgb_values, KERNEL(expanded_rgb), sizeof(uint16_t), 0)
+TABLE_VALUES(expanded_mono_values, KERNEL(expanded_mono), sizeof(uint16_t), 0)
+TABLE_FORMS(expanded_rgb, KERNEL(expanded_find), KERNEL(expanded_find), KERNEL(expanded_rgb), KERNEL(expanded_rgb_values), sizeof(uint16_t), 0)
+TABLE_FORMS(expanded_mono, KERNEL(expanded_find), KERNEL(expanded_find), KERNEL(expanded_mono), KERNEL(expanded_mono_values), sizeof(uint16_t), 0)
 
 const struct table_kernels KERNEL(table_expanded)[2] = {
 	{KERNEL(expanded_mono_evaluate), KERNEL(expanded_mono_nearest), KERNEL(expanded_mono_batch)},

@@ -4,95 +4,147 @@
  */
 #include "table.h"
 
-/* One look-up: four rows of phi_d in memory, and the weights. Both forms use offset to p; the compact form all. */
+/* One look-up: four rows of phi_d in memory, and the weights. */
 struct lookup {
-	uint32_t offset, step_h, step_d; /* from the table's start; to the next row along theta_h, along theta_d (0 at the end) */
-	uint32_t residual, share;
-	float h, d, p; /* fractions; at the end of theta_h and theta_d the step is 0, so any value will do */
-	float place;
+	uint32_t offset; /* from the table's start to (i, j, k) */
+	float h, d, p;   /* fractions, 0 to 1 */
+
+	/* compact only */
+	uint32_t step_d;          /* to the next block along theta_d */
+	uint32_t residual, share; /* bytes from the block's start */
+	float place;              /* between the two share codes */
 };
 
-/* The lattice cell of a point, and the fractions beyond its lower corner. */
+/* The lattice cell of a point, which has a next one along every axis, and the fractions beyond its lower corner. */
 struct cell {
-	int32_t i, j, k;
+	uint32_t i, j, k;
 	float h, d, p;
 };
 
-static inline struct cell KERNEL(cell)(const struct table *t, struct lattice_point at)
+static inline struct cell KERNEL(cell)(const struct table *t, f32x4 at)
 {
-	int32_t last_h = (int32_t)t->dims.theta_h - 1, last_d = (int32_t)t->dims.theta_d - 1, period = (int32_t)t->dims.phi_d;
-	int32_t i = (int32_t)at.h, j = (int32_t)at.d, k = (int32_t)at.p;
-	i = i < last_h ? i : last_h;
-	j = j < last_d ? j : last_d;
-	return (struct cell){i, j, k < period ? k : k - period, at.h - (float)i, at.d - (float)j, at.p - (float)k};
+	at = min_x4(at, t->top);
+	i32x4 cell = __builtin_convertvector(min_x4(at, t->inner), i32x4);
+	at -= __builtin_convertvector(cell, f32x4);
+	return (struct cell){(uint32_t)cell[0], (uint32_t)cell[1], (uint32_t)cell[2], at[0], at[1], at[2]};
 }
 
-/* Pairs that are located together: the loop vectorises over them, and their cells are on the way to the cache while others are evaluated. */
+/* Pairs that are located together: the loops vectorise over them, and their cells are on the way to the cache while others are evaluated. */
 enum { BLOCK = 64 };
 
 struct lookups {
-	uint32_t offset[BLOCK], step_h[BLOCK], step_d[BLOCK], residual[BLOCK], share[BLOCK];
+	uint32_t offset[BLOCK], step_d[BLOCK], residual[BLOCK], share[BLOCK];
 	float h[BLOCK], d[BLOCK], p[BLOCK], place[BLOCK];
-	float usable[BLOCK]; /* 1, or 0: the value is 0 */
+	int32_t usable[BLOCK]; /* all bits, or none: the value is 0 */
+	bool all_usable;
+	size_t count;
 };
 
-/* Points of pairs first..first+n-1; returns n, at most BLOCK. The point of an unusable pair is 0, 0, 0. */
-static size_t KERNEL(locate)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], size_t first,
-                             struct lookups *restrict to)
-{
-	const float *restrict ix = wi[0] + first, *restrict iy = wi[1] + first, *restrict iz = wi[2] + first;
-	const float *restrict ox = wo[0] + first, *restrict oy = wo[1] + first, *restrict oz = wo[2] + first;
-	const struct lattice_scale scale = t->scale;
-	size_t n = count - first < BLOCK ? count - first : BLOCK;
+/* Three components of n directions. */
+struct components {
+	const float *x, *y, *z;
+};
 
+/* The points of n usable pairs; where `unit`, they are unit vectors already. */
+__attribute__((always_inline)) static inline void KERNEL(points)(const struct table *t, size_t n, bool unit, struct components i,
+                                                                struct components o, struct lookups *restrict to)
+{
+	const float *restrict ix = i.x, *restrict iy = i.y, *restrict iz = i.z, *restrict ox = o.x, *restrict oy = o.y, *restrict oz = o.z;
+	const float scale[3] = {t->scale[0], t->scale[1], t->scale[2]};
 	for (size_t m = 0; m < n; m++) {
-		float squared_i = ix[m] * ix[m] + iy[m] * iy[m] + iz[m] * iz[m];
-		float squared_o = ox[m] * ox[m] + oy[m] * oy[m] + oz[m] * oz[m];
-		float ni = direction_normaliser(squared_i), no = direction_normaliser(squared_o);
+		float ni = unit ? 1 : direction_normaliser(ix[m] * ix[m] + iy[m] * iy[m] + iz[m] * iz[m]);
+		float no = unit ? 1 : direction_normaliser(ox[m] * ox[m] + oy[m] * oy[m] + oz[m] * oz[m]);
 		struct direction_arguments a =
 			direction_arguments(ix[m] * ni, iy[m] * ni, iz[m] * ni, ox[m] * no, oy[m] * no, oz[m] * no);
-		struct lattice_point at = direction_point(scale, quarter_turns(a.y[0], a.x[0]), quarter_turns(a.y[1], a.x[1]),
-		                                          quarter_turns(a.y[2], a.x[2]), a.reflected);
-		bool ok = direction_usable(iz[m], squared_i, oz[m], squared_o);
-		to->h[m] = ok ? at.h : 0;
-		to->d[m] = ok ? at.d : 0;
-		to->p[m] = ok ? at.p : 0;
-		to->usable[m] = ok ? 1 : 0;
+		struct lattice_point at =
+			direction_point(scale, quarter_turns_of_squares(a.y[0], a.x[0]), quarter_turns_of_squares(a.y[1], a.x[1]),
+		                    quarter_turns_of_squares(a.y[2], a.x[2]), a.reflected);
+		to->h[m] = at.h;
+		to->d[m] = at.d;
+		to->p[m] = at.p;
 	}
-	return n;
 }
 
-/* Replaces the points by look-ups; FIND is inlined, and the loop vectorises. */
-#define FIND_ALL(t, FIND, n, to)                                                                                             \
-	for (size_t m = 0; m < n; m++) {                                                                                         \
-		struct lookup l = FIND(t, KERNEL(cell)(t, (struct lattice_point){to->h[m], to->d[m], to->p[m]}));                    \
-		to->offset[m] = l.offset;                                                                                            \
-		to->step_h[m] = l.step_h;                                                                                            \
-		to->step_d[m] = l.step_d;                                                                                            \
-		to->residual[m] = l.residual;                                                                                        \
-		to->share[m] = l.share;                                                                                              \
-		to->h[m] = l.h;                                                                                                      \
-		to->d[m] = l.d;                                                                                                      \
-		to->p[m] = l.p;                                                                                                      \
-		to->place[m] = l.place;                                                                                              \
-	}
-
-/* offset and steps count units of `unit` bytes */
-static inline void KERNEL(fetch)(const struct table *t, const struct lookups *l, size_t m, size_t unit)
+/* Points of the pairs from `first` on, at most BLOCK. The point of an unusable pair is 0, 0, 0. */
+static void KERNEL(locate)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], size_t first,
+                             struct lookups *restrict to)
 {
-	const uint8_t *cell = t->store + unit * l->offset[m], *above = cell + unit * l->step_h[m];
-	size_t step_d = unit * l->step_d[m];
+	const struct components i = {wi[0] + first, wi[1] + first, wi[2] + first}, o = {wo[0] + first, wo[1] + first, wo[2] + first};
+	size_t n = count - first < BLOCK ? count - first : BLOCK;
+	int32_t unit = -1, usable = -1; /* of all */
+
+	for (size_t m = 0; m < n; m++) {
+		float squared_i = i.x[m] * i.x[m] + i.y[m] * i.y[m] + i.z[m] * i.z[m];
+		float squared_o = o.x[m] * o.x[m] + o.y[m] * o.y[m] + o.z[m] * o.z[m];
+		bool both = (fabsf(squared_i - 1) < DIRECTION_UNIT_SLACK) & (fabsf(squared_o - 1) < DIRECTION_UNIT_SLACK);
+		unit &= both ? -1 : 0;
+		to->usable[m] = direction_usable(i.z[m], squared_i, o.z[m], squared_o) ? -1 : 0;
+		usable &= to->usable[m];
+	}
+	if (unit)
+		KERNEL(points)(t, n, true, i, o, to);
+	else
+		KERNEL(points)(t, n, false, i, o, to);
+	to->all_usable = usable != 0;
+	to->count = n;
+	for (size_t m = 0; !usable && m < n; m++) {
+		to->h[m] = to->usable[m] ? to->h[m] : 0;
+		to->d[m] = to->usable[m] ? to->d[m] : 0;
+		to->p[m] = to->usable[m] ? to->p[m] : 0;
+	}
+}
+
+/* The cell of one of many points: KERNEL(cell) for a loop that vectorises. */
+static inline struct cell KERNEL(cell_of)(const float top[3], const float inner[3], float h, float d, float p)
+{
+	h = h < top[0] ? h : top[0];
+	d = d < top[1] ? d : top[1];
+	p = p < top[2] ? p : top[2];
+	int32_t i = (int32_t)(h < inner[0] ? h : inner[0]), j = (int32_t)(d < inner[1] ? d : inner[1]), k = (int32_t)(p < inner[2] ? p : inner[2]);
+	return (struct cell){(uint32_t)i, (uint32_t)j, (uint32_t)k, h - (float)i, d - (float)j, p - (float)k};
+}
+
+/* Look-up m of the block after this one, if there is: its four rows are on the way while others are evaluated. */
+static inline void KERNEL(fetch)(const struct table *t, const struct lookups *next, size_t m, size_t unit, bool compact)
+{
+	if (m >= next->count)
+		return;
+	const size_t slice = unit * t->slice, step_d = unit * (compact ? next->step_d[m] : t->row);
+	const uint8_t *cell = t->store + unit * next->offset[m];
 	__builtin_prefetch(cell);
 	__builtin_prefetch(cell + step_d);
-	__builtin_prefetch(above);
-	__builtin_prefetch(above + step_d);
+	__builtin_prefetch(cell + slice);
+	__builtin_prefetch(cell + slice + step_d);
 }
 
-/* evaluate, nearest and batch of one form: FIND(table, cell) -> lookup, VALUE(table, lookup, rgb), offsets in UNIT bytes. */
-#define TABLE_FORMS(name, FIND, VALUE, UNIT)                                                                                 \
+/* VALUES of one form (see below) by its VALUE. */
+#define TABLE_VALUES(name, VALUE, UNIT, COMPACT)                                                                             \
+	static inline void KERNEL(name)(const struct table *t, const struct lookups *l, const struct lookups *next,              \
+	                                float *restrict r, float *restrict g, float *restrict b)                                 \
+	{                                                                                                                        \
+		for (size_t m = 0; m < l->count; m++) {                                                                              \
+			KERNEL(fetch)(t, next, m, UNIT, COMPACT);                                                                        \
+			struct lookup lookup = {.offset = l->offset[m], .h = l->h[m], .d = l->d[m], .p = l->p[m]};                       \
+			if (COMPACT) {                                                                                                   \
+				lookup.step_d = l->step_d[m];                                                                                \
+				lookup.residual = l->residual[m];                                                                            \
+			}                                                                                                                \
+			float value[3];                                                                                                  \
+			VALUE(t, &lookup, value);                                                                                        \
+			r[m] = value[0];                                                                                                 \
+			g[m] = value[1];                                                                                                 \
+			b[m] = value[2];                                                                                                 \
+		}                                                                                                                    \
+	}
+
+/*
+ * evaluate, nearest and batch of one form. FIND(table, cell) -> lookup, FIND_MANY the same for a loop; VALUE(table, lookup, rgb);
+ * VALUES(table, lookups, next, r, g, b), to the same bits; offsets in UNIT bytes; COMPACT is 1 or 0.
+ */
+#define TABLE_FORMS(name, FIND, FIND_MANY, VALUE, VALUES, UNIT, COMPACT)                                                     \
 	static void KERNEL(name##_evaluate)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])           \
 	{                                                                                                                        \
-		struct lattice_point at;                                                                                             \
+		f32x4 at;                                                                                                            \
 		if (direction_locate(t->scale, wi, wo, &at)) {                                                                       \
 			struct lookup lookup = FIND(t, KERNEL(cell)(t, at));                                                             \
 			VALUE(t, &lookup, rgb);                                                                                          \
@@ -102,46 +154,55 @@ static inline void KERNEL(fetch)(const struct table *t, const struct lookups *l,
 	}                                                                                                                        \
 	static void KERNEL(name##_nearest)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])            \
 	{                                                                                                                        \
-		struct lattice_point at;                                                                                             \
+		f32x4 at;                                                                                                            \
 		if (direction_locate(t->scale, wi, wo, &at)) {                                                                       \
 			struct cell cell = KERNEL(cell)(t, at);                                                                          \
-			cell.h = cell.d = cell.p = 0;                                                                                    \
+			cell.h = cell.h < 1 ? 0.0f : 1.0f; /* 1: the last corner */                                                      \
+			cell.d = cell.d < 1 ? 0.0f : 1.0f;                                                                               \
+			cell.p = cell.p < 1 ? 0.0f : 1.0f;                                                                               \
 			struct lookup lookup = FIND(t, cell);                                                                            \
 			VALUE(t, &lookup, rgb);                                                                                          \
 		} else {                                                                                                             \
 			rgb[0] = rgb[1] = rgb[2] = 0;                                                                                    \
 		}                                                                                                                    \
 	}                                                                                                                        \
-	static size_t KERNEL(name##_locate)(const struct table *t, size_t count, const float *const wi[3],                       \
-	                                    const float *const wo[3], size_t first, struct lookups *restrict to)                 \
+	static void KERNEL(name##_locate)(const struct table *t, size_t count, const float *const wi[3],                         \
+	                                  const float *const wo[3], size_t first, struct lookups *restrict to)                   \
 	{                                                                                                                        \
 		const struct table copy = *t; /* known not to change while *to is written */                                         \
-		size_t n = KERNEL(locate)(t, count, wi, wo, first, to);                                                              \
-		FIND_ALL((&copy), FIND, n, to)                                                                                       \
-		return n;                                                                                                            \
+		const float top[3] = {t->top[0], t->top[1], t->top[2]}, inner[3] = {t->inner[0], t->inner[1], t->inner[2]};          \
+		KERNEL(locate)(t, count, wi, wo, first, to);                                                                         \
+		for (size_t m = 0, n = to->count; m < n; m++) {                                                                      \
+			struct lookup l = FIND_MANY((&copy), KERNEL(cell_of)(top, inner, to->h[m], to->d[m], to->p[m]));                 \
+			to->offset[m] = l.offset;                                                                                        \
+			to->h[m] = l.h;                                                                                                  \
+			to->d[m] = l.d;                                                                                                  \
+			to->p[m] = l.p;                                                                                                  \
+			if (COMPACT) {                                                                                                   \
+				to->step_d[m] = l.step_d;                                                                                    \
+				to->residual[m] = l.residual;                                                                                \
+				to->share[m] = l.share;                                                                                      \
+				to->place[m] = l.place;                                                                                      \
+			}                                                                                                                \
+		}                                                                                                                    \
 	}                                                                                                                        \
 	static void KERNEL(name##_batch)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], \
 	                                 float *const rgb[3])                                                                    \
 	{                                                                                                                        \
 		struct lookups both[2];                                                                                              \
 		struct lookups *now = &both[0], *next = &both[1];                                                                    \
-		size_t first = 0, n = count ? KERNEL(name##_locate)(t, count, wi, wo, 0, now) : 0, later = 0;                        \
-		for (size_t m = 0; m < n; m++)                                                                                       \
-			KERNEL(fetch)(t, now, m, UNIT);                                                                                  \
-		for (; n; first += n, n = later) {                                                                                   \
-			later = first + n < count ? KERNEL(name##_locate)(t, count, wi, wo, first + n, next) : 0;                        \
-			for (size_t m = 0; m < n; m++) {                                                                                 \
-				if (m < later)                                                                                               \
-					KERNEL(fetch)(t, next, m, UNIT);                                                                         \
-				struct lookup lookup = {now->offset[m], now->step_h[m], now->step_d[m], now->residual[m], now->share[m],     \
-				                        now->h[m],      now->d[m],      now->p[m],      now->place[m]};                      \
-				float value[3];                                                                                              \
-				VALUE(t, &lookup, value);                                                                                    \
-				for (int c = 0; c < 3; c++)                                                                                  \
-					rgb[c][first + m] = value[c] * now->usable[m];                                                           \
-			}                                                                                                                \
-			struct lookups *swap = now;                                                                                      \
+		KERNEL(name##_locate)(t, count, wi, wo, 0, now);                                                                     \
+		for (size_t m = 0; m < now->count; m++)                                                                              \
+			KERNEL(fetch)(t, now, m, UNIT, COMPACT);                                                                         \
+		for (size_t first = 0; now->count;) {                                                                                \
+			struct lookups *done = now;                                                                                      \
+			float *const r = rgb[0] + first, *const g = rgb[1] + first, *const b = rgb[2] + first;                           \
+			KERNEL(name##_locate)(t, count, wi, wo, first + now->count, next);                                               \
+			VALUES(t, now, next, r, g, b);                                                                                   \
+			for (size_t m = 0; m < now->count && !now->all_usable; m++)                                                      \
+				r[m] = now->usable[m] ? r[m] : 0, g[m] = now->usable[m] ? g[m] : 0, b[m] = now->usable[m] ? b[m] : 0;        \
+			first += now->count;                                                                                             \
 			now = next;                                                                                                      \
-			next = swap;                                                                                                     \
+			next = done;                                                                                                     \
 		}                                                                                                                    \
 	}

@@ -14,19 +14,30 @@ struct table_kernels {
 	void (*batch)(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);
 };
 
+/* Where the values of one phi_d stand. */
+struct compact_place {
+	uint16_t block;          /* bytes from the row's start to its block of an even theta_d */
+	uint8_t residual, share; /* bytes from the block's start */
+	float place;             /* of the cell's start, between the two share codes */
+};
+
 struct table {
 	struct table_kernels kernels;
-	struct lattice_scale scale;
+	f32x4 scale;      /* lattice_scale_of */
+	f32x4 top, inner; /* the last corners (H - 1, D - 1, P, 0), and less by a half: inside the last cell that has a next one */
 	struct lattice_dims dims;
 	enum table_form form;
 	int channels;
 	float unit;   /* value = unit * stored, 1/sr; finite */
-	uint32_t row; /* expanded: uint16_t in a row of phi_d; compact: bytes in one */
+	uint32_t row;     /* expanded: uint16_t in a row of phi_d; compact: bytes in a pair of rows */
+	uint32_t slice;   /* ... from one theta_h to the next */
 
 	/* compact only */
 	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between share codes */
 	float half_reciprocal;
-	float share_base[2], share_step[2]; /* R/(R+G+B), B/(R+G+B) of code 0, and from code to code */
+	struct compact_place *place; /* of every phi_d, in the store after the cells */
+	/* (R, G, B, 0) in 1/sr = red sum times [0] + blue sum times [1] + sum of the means times [2]: of codes and means, with their weights */
+	f32x4 mix[3];
 
 	uint8_t *store; /* the cells, then TABLE_SLACK_BYTES that may be read and mean nothing */
 	size_t store_bytes;
