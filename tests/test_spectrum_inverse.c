@@ -137,7 +137,7 @@ static void the_inverse_gives_the_table_back(void **unused)
 		for (size_t i = 0; i < cells; i++)
 			spectrum[i] = table[i] = (float)(uniform() - 0.5);
 		assert_int_equal(spectrum_create(DIMS[n], &forward, NULL), BP_OK);
-		spectrum_forward(forward, spectrum);
+		spectrum_forward(forward, spectrum, 0);
 		float *back = inverse_of(DIMS[n], spectrum);
 		for (size_t i = 0; i < cells; i++)
 			assert_true(fabsf(back[i] - table[i]) < 3e-6f);

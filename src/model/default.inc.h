@@ -1,11 +1,87 @@
 /* default.inc.h: the loops of the default profile's fit and expansion. See kernels.h and default_model.h. */
 #include "fast_math.h"
 
-static void KERNEL(default_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out)
+/* Eight double lanes of n floats, joined in one order. */
+static double KERNEL(float_sum)(const float *x, size_t n)
 {
-	for (size_t k = 0; k < n; k++) {
-		float l = fast_log2f(1 + (float)(b[k] * factor));
-		out[k] = valid[k] ? l : 0;
+	lanes4 a = {0}, b = {0};
+	double rest = 0;
+	size_t k = 0;
+
+	for (; k + 8 <= n; k += 8) {
+		a += __builtin_convertvector(FLOATS_LOAD(x + k), lanes4);
+		b += __builtin_convertvector(FLOATS_LOAD(x + k + 4), lanes4);
+	}
+	for (; k < n; k++)
+		rest += (double)x[k];
+	a += b;
+	return lanes_sum(&a) + rest;
+}
+
+static double KERNEL(default_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out)
+{
+	enum { PIECE = 2048 }; /* summed while it is in the cache */
+	double sum = 0;
+
+	for (size_t at = 0; at < n; at += PIECE) {
+		const size_t end = at + PIECE < n ? at + PIECE : n;
+		for (size_t k = at; k < end; k++) {
+			float l = fast_log2f(1 + (float)(b[k] * factor));
+			out[k] = valid[k] ? l : 0;
+		}
+		sum += KERNEL(float_sum)(out + at, end - at);
+	}
+	return sum;
+}
+
+static double KERNEL(default_largest)(const double *b, const uint8_t *valid, size_t n)
+{
+	enum { LANES = 16 };
+	double lane[LANES] = {0};
+	size_t k = 0;
+
+	for (; k + LANES <= n; k += LANES)
+		for (int m = 0; m < LANES; m++) {
+			const double v = valid[k + (size_t)m] ? b[k + (size_t)m] : 0;
+			lane[m] = v > lane[m] ? v : lane[m];
+		}
+	for (; k < n; k++)
+		lane[0] = valid[k] && b[k] > lane[0] ? b[k] : lane[0];
+	for (int m = 1; m < LANES; m++)
+		lane[0] = lane[m] > lane[0] ? lane[m] : lane[0];
+	return lane[0];
+}
+
+static void KERNEL(default_moments)(const float *const x[3], size_t n, double sums[6])
+{
+	lanes4 a = {0}, b = {0}, c = {0}, d = {0}, e = {0}, f = {0};
+	const lanes4 one = LANES_ALL(1.0);
+
+	for (size_t k = 0; k + 4 <= n; k += 4) {
+		const lanes4 r = __builtin_convertvector(FLOATS_LOAD(x[0] + k), lanes4), s = __builtin_convertvector(FLOATS_LOAD(x[1] + k), lanes4),
+			     t = __builtin_convertvector(FLOATS_LOAD(x[2] + k), lanes4);
+		const lanes4 w = one / (one + (r * r + s * s + t * t)), wr = w * r, ws = w * s;
+		a += wr * r;
+		b += wr * s;
+		c += wr * t;
+		d += ws * s;
+		e += ws * t;
+		f += w * t * t;
+	}
+	sums[0] += lanes_sum(&a);
+	sums[1] += lanes_sum(&b);
+	sums[2] += lanes_sum(&c);
+	sums[3] += lanes_sum(&d);
+	sums[4] += lanes_sum(&e);
+	sums[5] += lanes_sum(&f);
+	for (size_t k = n / 4 * 4; k < n; k++) {
+		const double r = (double)x[0][k], s = (double)x[1][k], t = (double)x[2][k], w = 1 / (1 + (r * r + s * s + t * t));
+		sums[0] += w * r * r;
+		sums[1] += w * r * s;
+		sums[2] += w * r * t;
+		sums[3] += w * s * s;
+		sums[4] += w * s * t;
+		sums[5] += w * t * t;
 	}
 }
 
@@ -57,43 +133,31 @@ static void KERNEL(default_rotate)(float *const x[3], size_t n, const float m[3]
 	}
 }
 
-/* phi_d counts four times: along it the field is smoothest, and its basis has the fewest coefficients. Mirrored at its ends. */
-static void KERNEL(default_smooth)(float *row, const uint8_t *valid, const float *const neighbour[4], size_t n, float *scratch)
+static void KERNEL(default_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after,
+                                   float *scratch)
 {
 	const float *a = neighbour[0], *b = neighbour[1], *c = neighbour[2], *d = neighbour[3];
-	float *copy = scratch + 1;
+	float *restrict copy = scratch + 1;
 
 	for (size_t k = 0; k < n; k++)
-		copy[k] = row[k];
-	copy[-1] = copy[0];
-	copy[n] = copy[n - 1];
+		copy[k] = x[k];
+	copy[-1] = before;
+	copy[n] = after;
 	for (size_t k = 0; k < n; k++) {
 		float mean = (4 * (copy[(ptrdiff_t)k - 1] + copy[k + 1]) + ((a[k] + b[k]) + (c[k] + d[k]))) * (1.0f / 12);
-		row[k] = valid[k] ? copy[k] : mean;
+		x[k] = copy[k] + filled[k] * (mean - copy[k]);
 	}
 }
 
-static void KERNEL(default_shrink)(const float *const rows[9], const float *threshold, size_t n, float *out)
+static void KERNEL(default_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold, size_t n)
 {
-	const float *here = rows[4];
-	float energy[n], count = 0;
+	const float *a = square[0], *b = square[1], *c = square[2];
 
-	for (size_t q = 0; q < n; q++)
-		energy[q] = 0;
-	for (int r = 0; r < 9; r++)
-		if (rows[r]) {
-			const float *x = rows[r];
-			for (size_t q = 0; q < n; q++)
-				energy[q] += x[q] * x[q];
-			count++;
-		}
-	for (size_t q = 0; q + 1 < n; q++) {
-		energy[q] += 0.5f * here[q + 1] * here[q + 1];
-		energy[q + 1] += 0.5f * here[q] * here[q];
-	}
-	count++;
 	for (size_t q = 0; q < n; q++) {
-		float keep = 1 - threshold[q] * count / (energy[q] + 1e-30f);
-		out[q] = here[q] * (keep > 0 ? keep : 0);
+		const float *u = a + q, *v = b + q, *w = c + q;
+		const float left = u[0] + v[0] + w[0], here = u[stride] + v[stride] + w[stride], right = u[2 * stride] + v[2 * stride] + w[2 * stride];
+		const float energy = left + here + right + 0.5f * (v[stride - 1] + v[stride + 1]);
+		float keep = 1 - threshold * factor[q] / (energy + 1e-30f);
+		x[q] *= keep > 0 ? keep : 0;
 	}
 }

@@ -14,9 +14,12 @@
 
 #include "../error.h"
 #include "default_model.h"
+#include "fast_math.h"
 #include "kernels.h"
 #include "select.h"
 #include "spectrum.h"
+
+enum { LANES = 16 };
 
 static const float LAMBDA = 4;
 static const double NORMAL_MEDIAN = 0.6745; /* of |x| for a standard normal x */
@@ -24,36 +27,88 @@ static const float NOISE_LEAST = 0.004f;    /* in log2 units: below this sigma n
 
 struct noise {
 	float *scale;  /* per theta_d column of the finest bands */
-	float *factor; /* per lane */
+	float *factor; /* per lane; squared, once all is known */
 };
 
-static bp_status noise_estimate(struct lattice_dims d, const float *c, struct noise *noise, bp_error *error)
+/* Of sizes >= 0; few: room for as many of them. */
+static double median(const float *size, size_t n, double *few)
 {
-	const uint32_t rows = d.theta_h / 2, columns = d.theta_d / 2, row0 = d.theta_h - rows, column0 = d.theta_d - columns;
-	const uint32_t lanes = d.phi_d, even = (d.phi_d + 1) / 2, low = even / 5; /* lanes low.. of either kind are used for the scale */
-	const size_t room = (size_t)rows * (lanes > columns ? lanes : columns);
-	double *sample = malloc(room * sizeof *sample);
+	enum { SHIFT = 20, BINS = 1 << (31 - SHIFT) }; /* eight to the octave */
+	uint32_t bins[BINS] = {0}, bin = 0;
+	size_t below = 0, kept = 0;
 
-	if (!sample)
-		return error_memory(error, room * sizeof *sample);
+	if (!n)
+		return 0;
+	for (size_t i = 0; i < n; i++)
+		bins[bits_of_float(size[i]) >> SHIFT]++;
+	while (below + bins[bin] <= n / 2)
+		below += bins[bin++];
+	for (size_t i = 0; i < n; i++)
+		if (bits_of_float(size[i]) >> SHIFT == bin)
+			few[kept++] = (double)size[i];
+	return select_kth(few, kept, n / 2 - below);
+}
+
+/* The scale of every column, from a quarter of its coefficients of the higher harmonics. */
+static void scale_estimate(struct lattice_dims d, const float *band, uint32_t rows, uint32_t columns, float *sample, double *few,
+                           float *scale)
+{
+	const uint32_t lanes = d.phi_d, even = (lanes + 1) / 2, low = even / 5; /* lanes low.. of either kind */
+
 	for (uint32_t x = 0; x < columns; x++) {
 		size_t n = 0;
 		for (uint32_t y = 0; y < rows; y++) {
-			const float *row = c + ((size_t)(row0 + y) * d.theta_d + column0 + x) * d.phi_d;
-			for (uint32_t q = 0; q < lanes; q++)
-				if ((q < even ? q : q - even) >= low && (q + y) % 4 == 0)
-					sample[n++] = (double)fabsf(row[q]);
+			const float *row = band + ((size_t)y * d.theta_d + x) * lanes;
+			for (uint32_t q = (4 - y % 4) % 4; q < lanes; q += 4)
+				if ((q < even ? q : q - even) >= low)
+					sample[n++] = fabsf(row[q]);
 		}
-		noise->scale[x] = n ? (float)(select_kth(sample, n, n / 2) / NORMAL_MEDIAN) + 1e-12f : 1e-12f;
+		scale[x] = (float)(median(sample, n, few) / NORMAL_MEDIAN) + 1e-12f;
 	}
-	for (uint32_t q = 0; q < lanes; q++) {
-		size_t n = 0;
+}
+
+/* The factor of every lane, from every second of its coefficients; LANES lanes at a time, which stand side by side in memory. */
+static void factor_estimate(struct lattice_dims d, const float *band, uint32_t rows, uint32_t columns, float *sample, double *few,
+                            struct noise *noise)
+{
+	const size_t room = (size_t)rows * columns;
+
+	for (uint32_t q0 = 0; q0 < d.phi_d; q0 += LANES) {
+		const uint32_t count = d.phi_d - q0 < LANES ? d.phi_d - q0 : LANES;
+		size_t n[LANES] = {0};
 		for (uint32_t y = 0; y < rows; y++)
-			for (uint32_t x = (y + q) % 2; x < columns; x += 2)
-				sample[n++] = (double)(fabsf(c[((size_t)(row0 + y) * d.theta_d + column0 + x) * d.phi_d + q]) / noise->scale[x]);
-		noise->factor[q] = n ? (float)(select_kth(sample, n, n / 2) / NORMAL_MEDIAN) : 0;
+			for (uint32_t x = 0; x < columns; x++) {
+				const float *row = band + ((size_t)y * d.theta_d + x) * d.phi_d + q0, per = 1 / noise->scale[x];
+				for (uint32_t q = (x + y + q0) % 2; q < count; q += 2)
+					sample[q * room + n[q]++] = fabsf(row[q]) * per;
+			}
+		for (uint32_t q = 0; q < count; q++)
+			noise->factor[q0 + q] = (float)(median(sample + q * room, n[q], few) / NORMAL_MEDIAN);
 	}
+}
+
+/* False where there is so little noise that nothing is done. */
+static bp_status noise_estimate(struct lattice_dims d, const float *c, struct noise *noise, bool *noisy, bp_error *error)
+{
+	const uint32_t rows = d.theta_h / 2, columns = d.theta_d / 2;
+	const float *band = c + ((size_t)(d.theta_h - rows) * d.theta_d + d.theta_d - columns) * d.phi_d;
+	const size_t room = (size_t)rows * (d.phi_d > LANES * columns ? d.phi_d : LANES * columns);
+	float *sample = malloc(room * sizeof *sample), largest = 0;
+	double *few = malloc(room * sizeof *few);
+
+	if (!sample || !few) {
+		free(sample);
+		free(few);
+		return error_memory(error, room * sizeof *few);
+	}
+	scale_estimate(d, band, rows, columns, sample, few, noise->scale);
+	for (uint32_t x = 0; x < columns; x++)
+		largest = noise->scale[x] > largest ? noise->scale[x] : largest;
+	*noisy = largest >= NOISE_LEAST;
+	if (*noisy)
+		factor_estimate(d, band, rows, columns, sample, few, noise);
 	free(sample);
+	free(few);
 	return BP_OK;
 }
 
@@ -62,71 +117,89 @@ struct rectangle {
 	uint32_t row, column, rows, columns;
 };
 
-static void band_shrink(struct lattice_dims d, const float *c, struct rectangle band, const struct noise *noise, float *threshold, float *out)
+/*
+ * Squares of three rows of a band, of which the middle one is being shrunk, in place: what it needs of the others is here.
+ * A row is [columns + 2][P + 2]; its first and last cells are 0, as the first and last lanes are.
+ */
+struct squares {
+	float *row[3], *nothing; /* nothing: a row of zeros, for those beyond the band */
+	void *block;
+};
+
+static bp_status squares_alloc(struct lattice_dims d, struct squares *out, bp_error *error)
+{
+	const size_t row = ((size_t)d.theta_d + 2) * (d.phi_d + 2);
+	float *block = out->block = calloc(4 * row, sizeof *block);
+	if (!block)
+		return error_memory(error, 4 * row * sizeof *block);
+	for (int r = 0; r < 3; r++)
+		out->row[r] = block + (size_t)r * row;
+	out->nothing = block + 3 * row;
+	return BP_OK;
+}
+
+static void squares_fill(struct lattice_dims d, const float *c, struct rectangle band, uint32_t y, float *out)
+{
+	const float *from = c + ((size_t)(band.row + y) * d.theta_d + band.column) * d.phi_d;
+	for (size_t x = 0; x < band.columns; x++)
+		for (size_t q = 0; q < d.phi_d; q++)
+			out[(x + 1) * (d.phi_d + 2) + q + 1] = from[x * d.phi_d + q] * from[x * d.phi_d + q];
+	memset(out + ((size_t)band.columns + 1) * (d.phi_d + 2), 0, (d.phi_d + 2) * sizeof *out);
+}
+
+static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, const struct noise *noise, struct squares *squares)
 {
 	const struct kernels *kernels = kernels_get();
-	const uint32_t columns = d.theta_d / 2;
+	const uint32_t columns = d.theta_d / 2, p = d.phi_d;
 
-	for (uint32_t x = 0; x < band.columns; x++) {
-		const uint32_t at = (uint32_t)((uint64_t)x * columns / band.columns);
-		for (uint32_t q = 0; q < d.phi_d; q++) {
-			const float sigma = noise->scale[at] * noise->factor[q];
-			threshold[q] = LAMBDA * sigma * sigma;
-		}
-		for (uint32_t y = 0; y < band.rows; y++) {
-			const float *rows[9];
-			for (int r = 0; r < 9; r++) {
-				const int64_t yy = (int64_t)y + r / 3 - 1, xx = (int64_t)x + r % 3 - 1;
-				const int inside = yy >= 0 && yy < band.rows && xx >= 0 && xx < band.columns;
-				rows[r] = inside ? c + ((size_t)(band.row + yy) * d.theta_d + (size_t)(band.column + xx)) * d.phi_d : NULL;
-			}
-			kernels->default_shrink(rows, threshold, d.phi_d, out + ((size_t)(band.row + y) * d.theta_d + band.column + x) * d.phi_d);
+	squares_fill(d, c, band, 0, squares->row[0]);
+	for (uint32_t y = 0; y < band.rows; y++) {
+		const float *const row[3] = {y ? squares->row[(y + 2) % 3] : squares->nothing, squares->row[y % 3],
+		                             y + 1 < band.rows ? squares->row[(y + 1) % 3] : squares->nothing};
+		const int high = 1 + (y > 0) + (y + 1 < band.rows);
+		if (y + 1 < band.rows)
+			squares_fill(d, c, band, y + 1, squares->row[(y + 1) % 3]);
+		for (uint32_t x = 0; x < band.columns; x++) {
+			const float sigma = noise->scale[(uint64_t)x * columns / band.columns];
+			const int count = high * (1 + (x > 0) + (x + 1 < band.columns)) + 1; /* the two halves */
+			const size_t at = (size_t)x * (p + 2) + 1;
+			const float *const around[3] = {row[0] + at, row[1] + at, row[2] + at};
+			kernels->default_shrink(c + ((size_t)(band.row + y) * d.theta_d + band.column + x) * p, around, (size_t)p + 2, noise->factor,
+			                        LAMBDA * sigma * sigma * (float)count, p);
 		}
 	}
 }
 
 bp_status default_denoise(struct lattice_dims d, float *coefficient, bool *noisy, bp_error *error)
 {
-	const size_t cells = lattice_cells(d);
 	struct noise noise = {calloc(d.theta_d, sizeof(float)), calloc(d.phi_d, sizeof(float))};
-	float *out = NULL, *threshold = malloc(d.phi_d * sizeof *threshold), largest = 0;
-	bp_status status = BP_OK;
+	struct squares squares = {0};
+	bool here = false;
+	bp_status status = noise.scale && noise.factor ? BP_OK : error_memory(error, d.phi_d * sizeof(float));
 
-	if (!noise.scale || !noise.factor || !threshold) {
-		status = error_memory(error, d.phi_d * sizeof *threshold);
+	if (status || !spectrum_levels(d.theta_h, d.theta_d))
 		goto out;
-	}
-	if (!spectrum_levels(d.theta_h, d.theta_d))
+	status = noise_estimate(d, coefficient, &noise, &here, error);
+	if (status || !here)
 		goto out;
-	status = noise_estimate(d, coefficient, &noise, error);
+	status = squares_alloc(d, &squares, error);
 	if (status)
 		goto out;
-	for (uint32_t x = 0; x < d.theta_d / 2; x++)
-		largest = noise.scale[x] > largest ? noise.scale[x] : largest;
-	if (largest < NOISE_LEAST)
-		goto out;
-	out = malloc(cells * sizeof *out);
-	if (!out) {
-		status = error_memory(error, cells * sizeof *out);
-		goto out;
-	}
+	for (uint32_t q = 0; q < d.phi_d; q++)
+		noise.factor[q] *= noise.factor[q];
+	/* The coarsest band is kept as it is. */
 	uint32_t rows = d.theta_h, columns = d.theta_d;
 	for (uint32_t l = spectrum_levels(rows, columns); l > 0; l--) {
 		const uint32_t r = (rows + 1) / 2, c = (columns + 1) / 2;
-		band_shrink(d, coefficient, (struct rectangle){0, c, r, columns - c}, &noise, threshold, out);
-		band_shrink(d, coefficient, (struct rectangle){r, 0, rows - r, c}, &noise, threshold, out);
-		band_shrink(d, coefficient, (struct rectangle){r, c, rows - r, columns - c}, &noise, threshold, out);
+		band_shrink(d, coefficient, (struct rectangle){0, c, r, columns - c}, &noise, &squares);
+		band_shrink(d, coefficient, (struct rectangle){r, 0, rows - r, c}, &noise, &squares);
+		band_shrink(d, coefficient, (struct rectangle){r, c, rows - r, columns - c}, &noise, &squares);
 		rows = r;
 		columns = c;
 	}
-	/* The coarsest band is kept as it is. */
-	for (uint32_t y = 0; y < rows; y++)
-		memcpy(out + (size_t)y * d.theta_d * d.phi_d, coefficient + (size_t)y * d.theta_d * d.phi_d, (size_t)columns * d.phi_d * sizeof *out);
-	memcpy(coefficient, out, cells * sizeof *out);
 	*noisy = true;
 out:
-	free(out);
-	free(threshold);
+	free(squares.block);
 	free(noise.scale);
 	free(noise.factor);
 	return status;

@@ -72,23 +72,17 @@ static void eigenvectors(double a[3][3], double v[3][3])
  */
 static void rotation_find(float *const channel[3], size_t rows, size_t lanes, float rotation[3][3])
 {
-	double a[3][3] = {{0}}, v[3][3];
+	const struct kernels *kernels = kernels_get();
+	double moment[6] = {0}, v[3][3];
 	int order[3] = {0, 1, 2};
 
-	for (size_t r = 1; r < rows; r += 3)
-		for (size_t k = r * lanes; k < (r + 1) * lanes; k++) {
-			const double x = (double)channel[0][k], y = (double)channel[1][k], z = (double)channel[2][k];
-			const double w = 1 / (1 + (x * x + y * y + z * z));
-			a[0][0] += w * x * x;
-			a[0][1] += w * x * y;
-			a[0][2] += w * x * z;
-			a[1][1] += w * y * y;
-			a[1][2] += w * y * z;
-			a[2][2] += w * z * z;
-		}
-	a[1][0] = a[0][1];
-	a[2][0] = a[0][2];
-	a[2][1] = a[1][2];
+	for (size_t r = 1; r < rows; r += 3) {
+		const float *const x[3] = {channel[0] + r * lanes, channel[1] + r * lanes, channel[2] + r * lanes};
+		kernels->default_moments(x, lanes, moment);
+	}
+	double a[3][3] = {
+		{moment[0], moment[1], moment[2]}, {moment[1], moment[3], moment[4]}, {moment[2], moment[4], moment[5]}
+	};
 	eigenvectors(a, v);
 	for (int i = 0; i < 3; i++)
 		for (int j = i + 1; j < 3; j++)
@@ -164,26 +158,8 @@ static double largest_value(const struct lattice *lattice)
 	const size_t cells = lattice_cells(lattice->dims);
 	double largest = 0;
 	for (int c = 0; c < 3; c++)
-		for (size_t i = 0; i < cells; i++) {
-			double v = lattice->valid[i] ? lattice->rgb[c][i] : 0;
-			largest = v > largest ? v : largest;
-		}
+		largest = fmax(largest, kernels_get()->default_largest(lattice->rgb[c], lattice->valid, cells));
 	return largest;
-}
-
-/* Takes the valid cells' mean off the whole table and returns it. */
-static float base_remove(float *table, const uint8_t *valid, size_t cells)
-{
-	double sum = 0;
-	size_t count = 0;
-	for (size_t i = 0; i < cells; i++) {
-		sum += valid[i] ? (double)table[i] : 0;
-		count += valid[i];
-	}
-	const float mean = (float)(sum / (double)count);
-	for (size_t i = 0; i < cells; i++)
-		table[i] -= mean;
-	return mean;
 }
 
 bp_status default_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error)
@@ -209,14 +185,14 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 		return status;
 	status = spectrum_create(d, &spectrum, error);
 	for (int c = 0; !status && c < 3; c++) {
-		float *table = fitted->coefficient[c];
-		kernels->default_logs(lattice->rgb[c], lattice->valid, cells, 1 / (fitted->unit * (double)DEFAULT_OFFSET), table);
-		status = default_fill(d, lattice->valid, table, error);
-		if (status)
-			break;
-		fitted->base[c] = base_remove(table, lattice->valid, cells);
-		spectrum_forward(spectrum, table);
+		const double factor = 1 / (fitted->unit * (double)DEFAULT_OFFSET);
+		const double sum = kernels->default_logs(lattice->rgb[c], lattice->valid, cells, factor, fitted->coefficient[c]);
+		fitted->base[c] = (float)(sum / (double)lattice->valid_count);
 	}
+	if (!status)
+		status = default_fill(d, lattice->valid, fitted->coefficient, error);
+	for (int c = 0; !status && c < 3; c++)
+		spectrum_forward(spectrum, fitted->coefficient[c], fitted->base[c]);
 	spectrum_free(spectrum);
 	if (status)
 		return status;

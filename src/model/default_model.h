@@ -62,7 +62,7 @@ uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end,
 /* default_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. */
 bp_status default_denoise(struct lattice_dims dims, float *coefficient, bool *noisy, bp_error *error);
 
-/* default_fill.c: values for invalid cells of one table [theta_h][theta_d][phi_d] of logarithms. */
-bp_status default_fill(struct lattice_dims dims, const uint8_t *valid, float *table, bp_error *error);
+/* default_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. */
+bp_status default_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], bp_error *error);
 
 #endif

@@ -98,7 +98,7 @@ void spectrum_free(struct spectrum *t)
 }
 
 /* One slice [theta_d][phi_d] becomes [theta_d][lane] in place. */
-static void slice_forward(struct spectrum *t, float *slice)
+static void slice_forward(struct spectrum *t, float *slice, float base)
 {
 	const struct kernels *kernels = kernels_get();
 	const size_t p = t->dims.phi_d, rows = t->dims.theta_d, even = t->even, odd = t->odd;
@@ -108,11 +108,11 @@ static void slice_forward(struct spectrum *t, float *slice)
 		const float *x = slice + j * p;
 		float *e = sum + j * even, *o = difference + j * odd;
 		for (size_t k = 0; k < odd; k++) {
-			e[k] = x[k] + x[p - 1 - k];
+			e[k] = (x[k] - base) + (x[p - 1 - k] - base);
 			o[k] = x[k] - x[p - 1 - k];
 		}
 		if (even > odd)
-			e[odd] = x[odd];
+			e[odd] = x[odd] - base;
 	}
 	kernels->cosine_product(sum, even, rows, even, t->to_even, t->even_columns, t->product, t->even_columns);
 	for (size_t j = 0; j < rows; j++)
@@ -122,14 +122,14 @@ static void slice_forward(struct spectrum *t, float *slice)
 		memcpy(slice + j * p + even, t->product + j * t->odd_columns, odd * sizeof(float));
 }
 
-void spectrum_forward(struct spectrum *t, float *table)
+void spectrum_forward(struct spectrum *t, float *table, float base)
 {
 	const struct kernels *kernels = kernels_get();
 	const size_t p = t->dims.phi_d, slice = t->dims.theta_d * p;
 	size_t rows = t->dims.theta_h, columns = t->dims.theta_d;
 
 	for (size_t i = 0; i < t->dims.theta_h; i++)
-		slice_forward(t, table + i * slice);
+		slice_forward(t, table + i * slice, base);
 	for (uint32_t l = 0; l < t->levels; l++) {
 		for (size_t i = 0; i < rows; i++)
 			kernels->cdf97_forward(table + i * slice, columns, p, p, t->scratch);

@@ -44,7 +44,7 @@ static inline uint32_t spectrum_lane(uint32_t phi_d, uint32_t harmonic)
 	return harmonic / 2 + (harmonic % 2 ? (phi_d + 1) / 2 : 0);
 }
 
-/* In place. The inverse: spectrum_inverse.h. */
-void spectrum_forward(struct spectrum *spectrum, float *table);
+/* Of table - base, in place. The inverse: spectrum_inverse.h. */
+void spectrum_forward(struct spectrum *spectrum, float *table, float base);
 
 #endif
