@@ -389,7 +389,7 @@ def rounded(x, least, most):
 
 STRETCH = [rounded(256 * math.log((i + 0.5) / (4095.5 - i)), -2047, 2047) for i in range(4096)]
 SQUASH = [rounded(65536 / (1 + math.exp(-(i - 2048) / 256)), 16, 65520) for i in range(4096)]
-RATE = [655360 // (10 * n + 16) for n in range(251)]
+RATE = [min(655360 // (10 * n + 16), 32767) for n in range(251)]
 LEAST = [0, 1, 2, 3, 4, 7, 11, 16, 26, 41, 64, 102, 162, 256, 407, 646]
 SIZES = [sum(v >= x for x in LEAST) - 1 for v in range(647)]
 
@@ -399,7 +399,7 @@ def size(v):
 
 
 class Mixer:
-    """Contexts [p, n] and weights of one kind of bit, made as they are asked for."""
+    """Contexts [p, n] and weights of bits by a mix of four, made as they are asked for."""
 
     def __init__(self):
         self.contexts, self.weights = [{}, {}, {}, {}], {}
@@ -412,22 +412,38 @@ class Mixer:
         bit = coder.bit_with(65536 - q)
         e = (bit << 16) - q
         for i in range(4):
-            weights[i] = min(max(weights[i] + (t[i] * e + 16384 >> 15), -1 << 24), 1 << 24)
+            weights[i] = min(max(weights[i] + (t[i] * e + 16384 >> 15), 1 - (1 << 18)), (1 << 18) - 1)
             learn(contexts[i], bit, 60)
+        return bit
+
+
+class Pair:
+    """Contexts of one kind of bit by a pair."""
+
+    def __init__(self):
+        self.contexts = [{}, {}]
+
+    def bit(self, coder, indices):
+        a, b = [c.setdefault(i, [1 << 21, 0]) for c, i in zip(self.contexts, indices)]
+        bit = coder.bit_with(65536 - min(max(a[0] + b[0] >> 7, 16), 65520))
+        learn(a, bit, 40)
+        learn(b, bit, 40)
         return bit
 
 
 def learn(context, bit, limit):
     p, n = context
-    context[:] = min(p + (((bit << 22) - p) * RATE[n] >> 16), (1 << 22) - 1), n + (n < limit)
+    context[:] = p + ((1 << 22) - p >> 6) * RATE[n] // 1024 if bit else p - (p >> 6) * RATE[n] // 1024, n + (n < limit)
 
 
-class Quiet:
-    def __init__(self):
-        self.contexts = {}
+class Alone:
+    """Bits by one context each."""
+
+    def __init__(self, *start):
+        self.contexts, self.start = {}, start
 
     def bit(self, coder, index):
-        context = self.contexts.setdefault(index, [83886, 6])
+        context = self.contexts.setdefault(index, list(self.start))
         bit = coder.bit_with(65536 - min(max(context[0] >> 6, 16), 65520))
         learn(context, bit, 250)
         return bit
@@ -461,8 +477,9 @@ class Planes:
                 self.bands.append(Band(rows, columns, orientation, 0 if l == top else b - 3, int(l != top)))
         # keyed by (field, harmonic, band, row, column); what is not there is 0
         self.known, self.sign, self.active_bands, self.active_blocks = {}, {}, set(), set()
-        self.band_bits, self.block_bits, self.zero_bits, self.sign_bits, self.refine_bits = (Mixer() for _ in range(5))
-        self.quiet, self.quiet_band, self.quiet_block = Quiet(), Quiet(), Quiet()
+        self.band_bits, self.block_bits, self.zero_bits, self.refine_bits = (Pair() for _ in range(4))
+        self.quiet_cell, self.quiet_row, self.quiet_band, self.quiet_block = (Alone(83886, 6) for _ in range(4))
+        self.sign_bits, self.first_bits = Mixer(), Alone(1 << 21, 0)
 
     def units(self):
         return 3 * self.p * self.planes
@@ -484,8 +501,7 @@ class Planes:
                             continue
                         self.active_blocks.add((f, m, b, by, bx))
                     for y in range(8 * by, min(8 * by + 8, band.rows)):
-                        for x in range(8 * bx, min(8 * bx + 8, band.columns)):
-                            self.cell(b, y, x, fresh)
+                        self.row(b, y, range(8 * bx, min(8 * bx + 8, band.columns)), fresh)
 
     def around_flag(self, flags, *place):
         f, m = self.f, self.m
@@ -499,8 +515,7 @@ class Planes:
         if not (near or alike or others) and (b == 0 or not parent):
             return self.quiet_band.bit(self.coder, 2 * self.cls + self.c)
         return self.band_bits.bit(self.coder, (
-            (((3 * near + alike) * 2 + parent) * 3 + others) * 2 + self.c, (2 * b + parent) * 2 + self.c,
-            (near + alike) * self.B + b, ((2 * others + (alike > 0)) * 2 + (near > 0)) * 2 + self.m % 2), self.c)
+            (((3 * near + alike) * 2 + parent) * 3 + others) * 2 + self.c, (near + alike) * self.B + b))
 
     def block_flag(self, b, y, x):
         band, flags = self.bands[b], self.active_blocks
@@ -517,50 +532,68 @@ class Planes:
         if not (beside or corners or near or alike or others or parent):
             return self.quiet_block.bit(self.coder, 2 * (self.cls * self.B + b) + self.c)
         return self.block_bits.bit(self.coder, (
-            (((3 * beside + corners) * 3 + alike) * 3 + near) * 2 + parent, (((3 * b + alike) * 3 + near) * 3 + others) * 2 + self.c,
-            ((5 * others + beside) * 3 + alike) * 2 + parent, (5 * b + beside) * 3 + corners), self.c * self.B + b)
+            (((3 * beside + corners) * 3 + alike) * 3 + near) * 2 + parent, (((3 * b + alike) * 3 + near) * 3 + others) * 2 + self.c))
 
-    def cell(self, b, y, x, fresh):
-        known, p, f, m, c, band = self.known, self.plane, self.f, self.m, self.c, self.bands[b]
+    def sums(self, b, y, x):
+        """k itself, around, along, others and parent of a cell."""
+        f, m, p, band, known = self.f, self.m, self.plane, self.bands[b], self.known
 
         def k(dy=0, dx=0, dm=0):
             return known.get((f, m + dm, b, y + dy, x + dx), 0)
-        left, right, up, down = k(0, -1), k(0, 1), k(-1), k(1)
-        before, after, before2, after2 = k(dm=-1), k(dm=1), k(dm=-2), k(dm=2)
-        around = 2 * (left + right + up + down) + k(-1, -1) + k(-1, 1) + k(1, -1) + k(1, 1) >> p
-        along, half = 2 * (before2 + after2) + before + after >> p, 2 << p if p else 0
-        if k():
-            v = k() >> p + 3
+        around = 2 * (k(0, -1) + k(0, 1) + k(-1) + k(1)) + k(-1, -1) + k(-1, 1) + k(1, -1) + k(1, 1) >> p
+        along = 2 * (k(dm=-2) + k(dm=2)) + k(dm=-1) + k(dm=1) >> p
+        others = sum(known.get((g, m, b, y, x), 0) for g in range(3) if g != f) >> p
+        parent = known.get((f, m, band.parent, y >> band.shift, x >> band.shift), 0) >> p if b else 0
+        return k(), around, along, others, parent
+
+    def row(self, b, y, xs, fresh):
+        if any(any(self.sums(b, y, x)) for x in xs):
+            for x in xs:
+                self.cell(b, y, x, fresh)
+            return
+        if not self.quiet_row.bit(self.coder, self.quiet_index(b, fresh)):
+            return
+        x = next((x for x in xs[:-1] if self.first_bits.bit(self.coder, xs[-1] - x)), xs[-1])
+        self.begin(b, y, x)
+        for x in range(x + 1, xs.stop):
+            self.cell(b, y, x, fresh)
+
+    def quiet_index(self, b, fresh):
+        depth = 0 if self.plane == 0 else 1 if self.plane < 3 else 2
+        return (((self.cls * self.B + b) * 3 + depth) * 2 + self.c) * 2 + fresh
+
+    def cell(self, b, y, x, fresh):
+        known, p, f, m, c = self.known, self.plane, self.f, self.m, self.c
+        k, around, along, others, parent = self.sums(b, y, x)
+        if k:
+            v = k >> p + 3
             tall = v if v < 4 else 4 if v < 8 else 5
             bit = self.refine_bits.bit(self.coder, (
-                16 * tall + size(around), (16 * tall + size(along)) * 2 + c,
-                (self.B * tall + b) * 16 + size(around + along >> 1), self.cls * self.B + b), tall)
-            known[f, m, b, y, x] = (2 * v + bit << p + 2) + half
-            return
-        others = sum(known.get((g, m, b, y, x), 0) for g in range(3) if g != f) >> p
-        parent = 0
-        if b:
-            parent = known.get((f, m, band.parent, y >> band.shift, x >> band.shift), 0) >> p
-        depth = 0 if p == 0 else 1 if p < 3 else 2
-        everything = size(2 * (around + along + parent) + others >> 1)
-        if everything == 0:
-            bit = self.quiet.bit(self.coder, (((self.cls * self.B + b) * 3 + depth) * 2 + c) * 2 + fresh)
+                (16 * tall + size(along)) * 2 + c, (self.B * tall + b) * 16 + size(around + along >> 1)))
+            known[f, m, b, y, x] = (2 * v + bit << p + 2) + (2 << p if p else 0)
+        elif not (around or along or others or parent):
+            if self.quiet_cell.bit(self.coder, self.quiet_index(b, fresh)):
+                self.begin(b, y, x)
         else:
-            def tier(v):
+            def tier(dy=0, dx=0, dm=0):
+                v = known.get((f, m + dm, b, y + dy, x + dx), 0)
                 return 0 if v == 0 else 1 if v >> p < 6 else 2
-            bit = self.zero_bits.bit(self.coder, (
-                (8 * (size(parent) >> 1) + (size(others) >> 1)) * 16 + everything,
-                (((3 * tier(left) + tier(up)) * 3 + tier(right)) * 3 + tier(down)) * 4 + band.orientation,
-                (((3 * tier(before2) + tier(after2)) * 3 + tier(before)) * 3 + tier(after)) * 16 + size(around),
-                (12 * (12 * y // band.rows) + 12 * x // band.columns) * 16 + everything), (c * self.B + b) * 3 + depth)
-        if bit:
-            def s(dy=0, dx=0, dm=0):
-                return self.sign.get((f, m + dm, b, y + dy, x + dx), 0)
-            first = self.sign.get((0, m, b, y, x), 0) if f else 0
-            self.sign[f, m, b, y, x] = 1 + self.sign_bits.bit(self.coder, (
-                (3 * s(0, -1) + s(-1)) * self.B + b, ((3 * s(dm=-2) + s(dm=2)) * 3 + s(dm=-1)) * 3 + first,
-                (((3 * s(0, -1) + s(0, 1)) * 3 + s(-1)) * 3 + s(1)) * 4 + band.orientation, (2 * first + (f > 1)) * self.B + b), c)
-            known[f, m, b, y, x] = (4 << p) + half
+            sizes = ((8 * (size(parent) >> 2) + (size(others) >> 1)) * 16 + size(around)) * 16 + size(along)
+            ring = ((3 * tier(dm=-2) + tier(dm=2)) * 3 + tier(dm=-1)) * 3 + tier(dm=1)
+            beside = ((3 * tier(0, -1) + tier(-1)) * 3 + tier(0, 1)) * 3 + tier(1)
+            if self.zero_bits.bit(self.coder, (2 * sizes + c, 81 * ring + beside)):
+                self.begin(b, y, x)
+
+    def begin(self, b, y, x):
+        known, p, f, m, c, band = self.known, self.plane, self.f, self.m, self.c, self.bands[b]
+
+        def s(dy=0, dx=0, dm=0):
+            return self.sign.get((f, m + dm, b, y + dy, x + dx), 0)
+        first = self.sign.get((0, m, b, y, x), 0) if f else 0
+        self.sign[f, m, b, y, x] = 1 + self.sign_bits.bit(self.coder, (
+            (3 * s(0, -1) + s(-1)) * self.B + b, ((3 * s(dm=-2) + s(dm=2)) * 3 + s(dm=-1)) * 3 + first,
+            (((3 * s(0, -1) + s(0, 1)) * 3 + s(-1)) * 3 + s(1)) * 4 + band.orientation, (2 * first + (f > 1)) * self.B + b), c)
+        known[f, m, b, y, x] = (4 << p) + (2 << p if p else 0)
 
 
 def binary32(x):
@@ -582,7 +615,7 @@ def inverse_lift(x):
     return z
 
 
-DEFAULT_KINDS = {(16, 0, 1), (17, 1, 1)}
+DEFAULT_KINDS = {(16, 0, 1), (17, 1, 2)}
 
 
 def decode_default(record, layers):

@@ -25,24 +25,28 @@ static void bands_cover_every_coefficient_once(void **unused)
 	for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
 		const uint32_t h = sizes[s][0], d = sizes[s][1];
 		struct bands bands;
-		uint8_t *seen = calloc(h, d), *padded;
+		uint8_t *seen = calloc(h, d), *numbers;
 		bands_lay_out(h, d, &bands);
-		padded = calloc(bands.cells, 1);
+		numbers = calloc(bands.blocks, 1);
 		for (uint32_t b = 0; b < bands.count; b++) {
 			const struct band *band = &bands.band[b];
 			assert_true(band->parent < (int32_t)b);
 			for (uint32_t y = 0; y < band->rows; y++)
 				for (uint32_t x = 0; x < band->columns; x++) {
-					const uint32_t at = band->at + y * band->stride + x;
 					assert_int_equal(seen[(band->row + y) * d + band->column + x]++, 0);
-					assert_true(at >= band->stride + 1 && at + band->stride + 1 < bands.cells);
-					assert_int_equal(padded[at]++, 0);
+					assert_true(y / BLOCK_EDGE < band->block_rows && x / BLOCK_EDGE < band->block_columns);
+				}
+			for (uint32_t y = 0; y < band->block_rows; y++)
+				for (uint32_t x = 0; x < band->block_columns; x++) {
+					const uint32_t at = band->block_at + y * band->block_stride + x;
+					assert_true(at >= band->block_stride + 1 && at + band->block_stride + 1 < bands.blocks);
+					assert_int_equal(numbers[at]++, 0);
 				}
 		}
 		for (uint32_t i = 0; i < h * d; i++)
 			assert_int_equal(seen[i], 1);
 		free(seen);
-		free(padded);
+		free(numbers);
 	}
 }
 
@@ -175,6 +179,48 @@ static void the_mixer_learns_what_a_bit_depends_on(void **unused)
 	byte_buffer_free(&bytes);
 }
 
+static void a_pair_of_contexts_and_one_alone_come_near_the_entropy(void **unused)
+{
+	(void)unused;
+	for (int pair = 0; pair < 2; pair++) {
+		struct byte_buffer bytes = {0};
+		struct range_encoder encoder;
+		struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
+		mixer_context contexts[2] = {MIXER_CONTEXT_EVEN, MIXER_CONTEXT_EVEN};
+		const double bits = 20000;
+		double ones = 0;
+		range_encoder_start(&encoder, &bytes);
+		for (int i = 0; i < bits; i++) {
+			const uint32_t bit = !random_below(20);
+			ones += bit;
+			if (pair)
+				mixed_bit_pair(&coder, 0, &contexts[0], &contexts[1], bit);
+			else
+				mixed_bit_alone(&coder, 0, &contexts[0], bit);
+		}
+		range_encoder_end(&encoder);
+		const double entropy = ones * log2(bits / ones) + (bits - ones) * log2(bits / (bits - ones));
+		/* A memory of n bits costs about 1/(4 n ln 2) of a bit each. */
+		assert_true((double)bytes.count * 8 < entropy + bits * (pair ? 1.5 / (4 * 40 * 0.69) : 1.5 / (4 * 250 * 0.69)) + 64);
+		assert_true((double)bytes.count * 8 > entropy);
+		byte_buffer_free(&bytes);
+	}
+}
+
+static void contexts_stay_probabilities_whatever_they_see(void **unused)
+{
+	const struct mixer_tables *tables = mixer_tables_get();
+	(void)unused;
+	for (uint32_t bit = 0; bit < 2; bit++)
+		for (uint32_t seen = 0; seen <= MIXER_SEEN_MAX_ALONE; seen++)
+			for (uint32_t p = 0; p < 1u << MIXER_PROBABILITY_BITS; p += p < 300 || p > (1u << MIXER_PROBABILITY_BITS) - 300 ? 1 : 4001) {
+				mixer_context context = p << 10 | seen;
+				mixer_context_learn(tables, &context, bit, 250);
+				assert_true(bit ? context >> 10 >= p : context >> 10 <= p);
+				assert_int_equal(context & 1023, seen < 250 ? seen + 1 : seen);
+			}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -183,6 +229,8 @@ int main(void)
 		cmocka_unit_test(the_lowest_plane_is_that_of_the_last_unit_coded),
 		cmocka_unit_test(arbitrary_bytes_decode_to_something_legal),
 		cmocka_unit_test(the_mixer_learns_what_a_bit_depends_on),
+		cmocka_unit_test(a_pair_of_contexts_and_one_alone_come_near_the_entropy),
+		cmocka_unit_test(contexts_stay_probabilities_whatever_they_see),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,10 @@ static void tables_fill(struct mixer_tables *tables)
 		tables->stretch[i] = (int16_t)floor((s < -2047 ? -2047 : s > 2047 ? 2047 : s) + 0.5);
 		tables->squash[i] = (uint16_t)floor((q < 16 ? 16 : q > 65520 ? 65520 : q) + 0.5);
 	}
-	for (uint32_t n = 0; n < 256; n++)
-		tables->rate[n] = 655360 / (10 * n + 16);
+	for (uint32_t n = 0; n < 256; n++) {
+		const uint32_t rate = 655360 / (10 * n + 16);
+		tables->rate[n] = rate < 32767 ? rate : 32767;
+	}
 }
 
 const struct mixer_tables *mixer_tables_get(void)

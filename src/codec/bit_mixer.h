@@ -1,11 +1,13 @@
 /*
- * bit_mixer.h: predicts a bit from several contexts at once: every context has an adaptive probability, and a
- * small online regression in the logistic domain (Mattern 2012; the PAQ coders of Mahoney) weighs them. Integers only; FORMAT.md, "Mixed bits".
+ * bit_mixer.h: predicts a bit from one context, from two, or from four. Every context has an adaptive probability. Two are averaged;
+ * four are weighed by a small online regression in the logistic domain (Mattern 2012; the PAQ coders of Mahoney), which takes three
+ * times as long. Integers only; FORMAT.md, "Mixed bits".
  */
 #ifndef CODEC_BIT_MIXER_H
 #define CODEC_BIT_MIXER_H
 
 #include <stdint.h>
+#include <string.h>
 
 #include "range_coder.h"
 
@@ -19,13 +21,17 @@ typedef uint32_t mixer_context;
 struct mixer_weights {
 	int32_t w[MIXER_INPUTS];
 };
-enum { MIXER_WEIGHT_START = 19661, MIXER_WEIGHT_MAX = 1 << 24, MIXER_SEEN_MAX = 60, MIXER_SEEN_MAX_ALONE = 250 };
+enum { MIXER_WEIGHT_START = 19661, MIXER_WEIGHT_MAX = (1 << 18) - 1, MIXER_SEEN_MAX_ALONE = 250, MIXER_SEEN_MAX_PAIR = 40, MIXER_SEEN_MAX = 60 };
+
+/* The four inputs side by side. All sums and products of the mixer fit 32 bits; FORMAT.md has the bounds. */
+typedef int32_t mixer_lanes __attribute__((vector_size(4 * MIXER_INPUTS)));
+typedef uint32_t mixer_words __attribute__((vector_size(4 * MIXER_INPUTS)));
 
 /* Tables, the same for all: stretch[i] = ln(p/(1-p)) of p = (i + 1/2)/4096, and its inverse, both with 8 bits behind the point. */
 struct mixer_tables {
 	int16_t stretch[4096];
 	uint16_t squash[4096];
-	uint32_t rate[256]; /* how far a context that has seen n bits moves: 65536/(n + 1.6) */
+	uint32_t rate[256]; /* how far a context that has seen n bits moves: 65536/(n + 1.6), at most 32767 */
 };
 const struct mixer_tables *mixer_tables_get(void); /* thread-safe */
 
@@ -38,51 +44,70 @@ struct mixed_coder {
 
 static inline void mixer_context_learn(const struct mixer_tables *tables, mixer_context *context, uint32_t bit, uint32_t limit)
 {
-	const uint32_t seen = *context & 1023;
-	int32_t p = (int32_t)(*context >> 10);
-	p += (int32_t)(((int64_t)((int32_t)(bit << MIXER_PROBABILITY_BITS) - p) * tables->rate[seen]) >> 16);
-	p = p > (1 << MIXER_PROBABILITY_BITS) - 1 ? (1 << MIXER_PROBABILITY_BITS) - 1 : p;
-	*context = (uint32_t)p << 10 | (seen < limit ? seen + 1 : seen);
+	const uint32_t seen = *context & 1023, p = *context >> 10;
+	const uint32_t rate = tables->rate[seen];
+	const uint32_t learnt = bit ? p + (((1u << MIXER_PROBABILITY_BITS) - p) >> 6) * rate / 1024 : p - (p >> 6) * rate / 1024;
+	*context = learnt << 10 | (seen + (seen < limit));
 }
 
-/* One bit with the probability of a single context. */
+/* One bit of which q / 65536 is the probability of being 1; a certainty is not believed. */
+static inline uint32_t mixed_bit_with(struct mixed_coder *coder, int decode, uint32_t q, uint32_t bit)
+{
+	q = q < 16 ? 16 : q > 65520 ? 65520 : q;
+	if (decode)
+		return range_decode_with(&coder->decoder, 65536 - q);
+	range_encode_with(coder->encoder, 65536 - q, bit);
+	return bit;
+}
+
 static inline uint32_t mixed_bit_alone(struct mixed_coder *coder, int decode, mixer_context *context, uint32_t bit)
 {
-	uint32_t p = *context >> 16;
-	p = p < 16 ? 16 : p > 65520 ? 65520 : p;
-	if (decode)
-		bit = range_decode_with(&coder->decoder, 65536 - p);
-	else
-		range_encode_with(coder->encoder, 65536 - p, bit);
+	bit = mixed_bit_with(coder, decode, *context >> 16, bit);
 	mixer_context_learn(coder->tables, context, bit, MIXER_SEEN_MAX_ALONE);
 	return bit;
 }
 
-/* One bit by the mix of four contexts; the four may coincide. */
+/* One bit by the average of two contexts, not the same. */
+static inline uint32_t mixed_bit_pair(struct mixed_coder *coder, int decode, mixer_context *first, mixer_context *second, uint32_t bit)
+{
+	bit = mixed_bit_with(coder, decode, ((*first >> 10) + (*second >> 10)) >> 7, bit);
+	mixer_context_learn(coder->tables, first, bit, MIXER_SEEN_MAX_PAIR);
+	mixer_context_learn(coder->tables, second, bit, MIXER_SEEN_MAX_PAIR);
+	return bit;
+}
+
+/* One bit by the mix of four contexts, no two of them the same. */
 static inline uint32_t mixed_bit(struct mixed_coder *coder, int decode, mixer_context *const context[MIXER_INPUTS],
                                  struct mixer_weights *weights, uint32_t bit)
 {
 	const struct mixer_tables *tables = coder->tables;
-	int32_t input[MIXER_INPUTS];
-	int64_t sum = 0;
+	const mixer_words state = {*context[0], *context[1], *context[2], *context[3]};
+	const mixer_lanes input = {tables->stretch[state[0] >> 20], tables->stretch[state[1] >> 20], tables->stretch[state[2] >> 20],
+	                           tables->stretch[state[3] >> 20]};
+	const mixer_words rate = {tables->rate[state[0] & 1023], tables->rate[state[1] & 1023], tables->rate[state[2] & 1023],
+	                          tables->rate[state[3] & 1023]};
+	mixer_lanes w;
 
-	for (int i = 0; i < MIXER_INPUTS; i++) {
-		input[i] = tables->stretch[*context[i] >> 20];
-		sum += (int64_t)weights->w[i] * input[i];
-	}
-	sum >>= 16;
+	memcpy(&w, weights->w, sizeof w);
+	const mixer_lanes part = w * input;
+	int32_t sum = (part[0] + part[1] + part[2] + part[3]) >> 16;
 	sum = sum < -2047 ? -2047 : sum > 2047 ? 2047 : sum;
-	const uint32_t p = tables->squash[sum + 2048];
-	if (decode)
-		bit = range_decode_with(&coder->decoder, 65536 - p);
-	else
-		range_encode_with(coder->encoder, 65536 - p, bit);
-	const int32_t miss = (int32_t)(bit << 16) - (int32_t)p;
-	for (int i = 0; i < MIXER_INPUTS; i++) {
-		const int32_t w = weights->w[i] + ((input[i] * miss + (1 << 14)) >> 15);
-		weights->w[i] = w < -MIXER_WEIGHT_MAX ? -MIXER_WEIGHT_MAX : w > MIXER_WEIGHT_MAX ? MIXER_WEIGHT_MAX : w;
-		mixer_context_learn(tables, context[i], bit, MIXER_SEEN_MAX);
-	}
+	const uint32_t q = tables->squash[sum + 2048];
+	bit = mixed_bit_with(coder, decode, q, bit);
+
+	w += (input * ((int32_t)(bit << 16) - (int32_t)q) + (1 << 14)) >> 15;
+	const mixer_lanes high = w > MIXER_WEIGHT_MAX, low = w < -MIXER_WEIGHT_MAX;
+	w = (w & ~(high | low)) | (high & MIXER_WEIGHT_MAX) | (low & -MIXER_WEIGHT_MAX);
+	memcpy(weights->w, &w, sizeof w);
+
+	/* mixer_context_learn of all four: towards 2^22 where the bit is 1, towards 0 where it is 0. */
+	const uint32_t zero = bit - 1;
+	const mixer_words p = state >> 10, seen = state & 1023;
+	const mixer_words step = ((((1u << MIXER_PROBABILITY_BITS) - p) & ~zero) | (p & zero)) >> 6;
+	const mixer_words move = step * rate >> 10;
+	const mixer_words learnt = (p + ((move ^ zero) - zero)) << 10 | (seen - (mixer_words)(seen < MIXER_SEEN_MAX));
+	for (int i = 0; i < MIXER_INPUTS; i++)
+		*context[i] = learnt[i];
 	return bit;
 }
 

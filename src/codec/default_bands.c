@@ -6,18 +6,11 @@ static void band_add(struct bands *bands, uint32_t orientation, uint32_t row, ui
 	*b = (struct band){.row = row, .column = column, .rows = rows, .columns = columns, .orientation = orientation};
 	b->parent = orientation == 0 ? -1 : coarsest ? 0 : (int32_t)bands->count - 3;
 	b->parent_shift = !coarsest;
-	b->stride = columns + 2;
-	b->at = bands->cells + b->stride + 1;
-	bands->cells += (rows + 2) * b->stride;
 	b->block_rows = (rows + BLOCK_EDGE - 1) / BLOCK_EDGE;
 	b->block_columns = (columns + BLOCK_EDGE - 1) / BLOCK_EDGE;
 	b->block_stride = b->block_columns + 2;
 	b->block_at = bands->blocks + b->block_stride + 1;
 	bands->blocks += (b->block_rows + 2) * b->block_stride;
-	for (uint32_t y = 0; y < rows; y++)
-		b->row_class[y] = (uint8_t)(y * 12 / rows);
-	for (uint32_t x = 0; x < columns; x++)
-		b->column_class[x] = (uint8_t)(x * 12 / columns);
 	bands->count++;
 }
 

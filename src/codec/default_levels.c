@@ -37,6 +37,22 @@ static uint32_t quantise(struct quantiser *q, float coefficient)
 	return level;
 }
 
+/* Puts a level that is not 0 where its block is, and notes how many planes the block and its band need. */
+static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, int32_t level)
+{
+	const size_t block0 = (size_t)(harmonic + 2) * p->bands.blocks, own = block0 + band->block_at - band->block_stride - 1;
+	const size_t at = block0 + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
+	const uint8_t bits = (uint8_t)(32 - __builtin_clz((uint32_t)abs(level)));
+	uint32_t *slot = &p->level_slot[field][at];
+	uint8_t *top = p->top[field];
+
+	if (!*slot)
+		*slot = p->levels_count++;
+	p->levels[*slot][y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE] = level;
+	top[at] = top[at] < bits ? bits : top[at];
+	top[own] = top[own] < bits ? bits : top[own];
+}
+
 uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding, float centre[2])
 {
 	const uint32_t lanes = p->dims.phi_d, even = (lanes + 1) / 2;
@@ -45,30 +61,25 @@ uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float st
 	uint32_t least_bits, planes = 0;
 
 	memcpy(&least_bits, &least, sizeof least_bits);
-	for (int f = 0; f < 3; f++) {
-		memset(p->level[f], 0, (size_t)(lanes + 4) * p->bands.cells * sizeof *p->level[f]);
+	memset(p->levels, 0, p->levels_count * sizeof *p->levels);
+	p->levels_count = 1;
+	for (uint32_t f = 0; f < 3; f++) {
+		memset(p->level_slot[f], 0, (size_t)(lanes + 4) * p->bands.blocks * sizeof *p->level_slot[f]);
 		memset(p->top[f], 0, (size_t)(lanes + 4) * p->bands.blocks);
 		for (uint32_t b = 0; b < p->bands.count; b++) {
 			const struct band *band = &p->bands.band[b];
 			for (uint32_t y = 0; y < band->rows; y++)
 				for (uint32_t x = 0; x < band->columns; x++) {
 					const float *row = coefficient[f] + ((size_t)(band->row + y) * p->dims.theta_d + band->column + x) * lanes;
-					const size_t at = band->at + (size_t)y * band->stride + x, own = band->block_at - band->block_stride - 1;
-					const size_t block = band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
 					for (uint32_t lane = 0; lane < lanes; lane++) {
 						if (lane % 16 == 0 && lane + 16 <= lanes && !any_above(row + lane, least_bits)) {
 							lane += 15;
 							continue;
 						}
 						const uint32_t level = quantise(&q, row[lane]);
-						if (!level)
-							continue;
 						const uint32_t harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
-						uint8_t *top = p->top[f] + (size_t)(harmonic + 2) * p->bands.blocks;
-						const uint8_t bits = (uint8_t)(32 - __builtin_clz(level));
-						p->level[f][(size_t)(harmonic + 2) * p->bands.cells + at] = row[lane] < 0 ? -(int32_t)level : (int32_t)level;
-						top[block] = top[block] < bits ? bits : top[block];
-						top[own] = top[own] < bits ? bits : top[own];
+						if (level)
+							level_place(p, f, harmonic, band, y, x, row[lane] < 0 ? -(int32_t)level : (int32_t)level);
 					}
 				}
 		}
@@ -84,32 +95,26 @@ uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float st
 static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t harmonic, uint32_t lowest, const struct band *band,
                              struct default_level *out, uint32_t room)
 {
-	const size_t cells = lattice_cells(p->dims), cell0 = (size_t)(harmonic + 2) * p->bands.cells;
-	const uint8_t *active = p->active[field] + (size_t)(harmonic + 2) * p->bands.blocks;
+	const uint32_t *slot = p->slot[field] + (size_t)(harmonic + 2) * p->bands.blocks + band->block_at;
+	const size_t field0 = field * lattice_cells(p->dims) + spectrum_lane(p->dims.phi_d, harmonic);
 	uint32_t n = 0;
 
-	if (!active[band->block_at - band->block_stride - 1])
+	if (!p->active[field][(size_t)(harmonic + 2) * p->bands.blocks + band->block_at - band->block_stride - 1])
 		return 0;
-	for (uint32_t y = 0; y < band->rows; y++) {
-		const uint8_t *blocks = active + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride;
-		for (uint32_t x = 0; x < band->columns; x++) {
-			const size_t at = cell0 + band->at + (size_t)y * band->stride + x;
-			if (x % BLOCK_EDGE == 0 && !blocks[x / BLOCK_EDGE]) {
-				x += BLOCK_EDGE - 1;
-				continue;
+	for (uint32_t by = 0; by < band->block_rows; by++)
+		for (uint32_t bx = 0; bx < band->block_columns; bx++) {
+			const uint32_t place = slot[by * band->block_stride + bx];
+			const struct plane_block *block = &p->pool[place];
+			for (uint32_t k = 0; place && k < BLOCK_CELLS; k++) {
+				const int32_t size = (int32_t)(block->known[k] >> 2 >> lowest << lowest);
+				if (!size)
+					continue;
+				const size_t row = (size_t)(band->row + by * BLOCK_EDGE + k / BLOCK_EDGE) * p->dims.theta_d + band->column + bx * BLOCK_EDGE + k % BLOCK_EDGE;
+				if (n < room)
+					out[n] = (struct default_level){.at = (uint32_t)(field0 + row * p->dims.phi_d), .level = block->sign[k] == 2 ? -size : size};
+				n++;
 			}
-			const int32_t size = (int32_t)(p->known[field][at] >> 2 >> lowest << lowest);
-			if (!size)
-				continue;
-			const size_t row = (size_t)(band->row + y) * p->dims.theta_d + band->column + x;
-			if (n < room)
-				out[n] = (struct default_level){
-					.at = (uint32_t)(field * cells + row * p->dims.phi_d + spectrum_lane(p->dims.phi_d, harmonic)),
-					.level = p->sign[field][at] == 2 ? -size : size,
-				};
-			n++;
 		}
-	}
 	return n;
 }
 

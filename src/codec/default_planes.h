@@ -11,19 +11,34 @@
 #include "bit_mixer.h"
 #include "default_bands.h"
 
+enum { BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
+
+/* What is known of the levels of one block, row by row; 0 behind the band's end. */
+struct plane_block {
+	uint32_t known[BLOCK_CELLS]; /* 4 |level| as far as it is known, with half of the last known plane added */
+	uint8_t sign[BLOCK_CELLS];   /* 0: the level is 0 so far, 1: positive, 2: negative */
+};
+
+/*
+ * Most blocks never hold a level. Those that do have a place in a pool, in the order in which they were met, so that what is worked on
+ * lies close together whatever the lattice's size.
+ */
 struct planes {
 	struct lattice_dims dims;
 	struct bands bands;
 	uint32_t planes;
-	/* Per field, [harmonic][padded plane], with two harmonics of zeros before and behind. */
-	uint32_t *known[3];  /* 4 |level| as far as it is known, with half of the last known plane added */
-	uint8_t *sign[3];    /* 0: the level is 0 so far, 1: positive, 2: negative */
-	uint8_t *active[3];  /* blocks with a level that is not 0; one padding cell is the band's own flag */
-	/* Encoder only: the levels and, per block, the planes that its largest one needs; the same layout. */
-	int32_t *level[3];
+	/* Per field, [harmonic][block], with two harmonics of zeros before and behind. */
+	uint32_t *slot[3];   /* the block's place in the pool; 0, a block of zeros, where all its levels are 0 so far */
+	uint8_t *active[3];  /* 1 where there is a slot; one block of padding is the band's own flag */
+	struct plane_block *pool;
+	uint32_t pool_count;
+	/* Encoder only: the levels, in a pool of their own, and, per block, the planes that its largest one needs. */
+	uint32_t *level_slot[3];
 	uint8_t *top[3];
+	int32_t (*levels)[BLOCK_CELLS];
+	uint32_t levels_count;
 	struct plane_contexts *contexts;
-	void *block; /* the one allocation behind the arrays */
+	void *block; /* the one allocation behind the arrays but for the pools */
 };
 
 bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **out, bp_error *error);
@@ -45,7 +60,7 @@ static inline uint32_t planes_units(const struct planes *planes)
 void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
 void planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
 
-/* The levels as units 0..end-1 tell them: malloc'ed, ordered by field, harmonic, band and place. */
+/* The levels as units 0..end-1 tell them: malloc'ed, ordered by field, harmonic, band, block and place. */
 bp_status planes_collect(const struct planes *planes, uint32_t end, struct default_level **out, uint32_t *count, bp_error *error);
 
 #endif

@@ -15,11 +15,11 @@
 #include "default_planes.h"
 #include "profile_codec.h"
 
-enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 };
+enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, PLANES_VERSION = 2 };
 
 static const struct section_kind KINDS[] = {
 	{ SECTION_FIELDS, CODEC_FIELDS, 1 },
-	{ SECTION_PLANES, CODEC_PLANES, 1 },
+	{ SECTION_PLANES, CODEC_PLANES, PLANES_VERSION },
 };
 
 /* Records up to these many bytes are previews of larger ones. */
@@ -248,7 +248,7 @@ static bp_status default_encode(const struct model *model, const struct encode_r
 			e.layers--;
 		fields_write(&e, sections);
 		for (uint32_t l = 0; l < e.layers; l++) {
-			struct byte_buffer *out = section_add(sections, SECTION_PLANES, CODEC_PLANES, 1, l, SECTION_REQUIRED, NAN);
+			struct byte_buffer *out = section_add(sections, SECTION_PLANES, CODEC_PLANES, PLANES_VERSION, l, SECTION_REQUIRED, NAN);
 			write_bytes(out, e.stream[l].bytes, e.stream[l].count);
 		}
 		*layer_count = e.layers;

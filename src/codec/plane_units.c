@@ -1,0 +1,386 @@
+/*
+ * plane_units.c: coding and decoding of one unit of bit planes (FORMAT.md, "Bit planes").
+ *
+ * One text serves both directions: every function takes `decode`, a constant after inlining. (Compiled for AVX2 besides it gained
+ * 6 %: the time goes into bits that depend on each other.)
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "default_planes.h"
+#include "plane_contexts.h"
+
+#define INLINE inline __attribute__((always_inline))
+
+static INLINE uint32_t size_of(const struct plane_contexts *c, uint32_t v)
+{
+	return c->size[v < SIZE_TABLE ? v : SIZE_TABLE - 1];
+}
+
+static INLINE uint32_t harmonic_class(uint32_t m)
+{
+	return m < 2 ? m : m < 4 ? 2 : m < 8 ? 3 : m < 16 ? 4 : m < 32 ? 5 : m < 64 ? 6 : 7;
+}
+
+/* 0: zero, 1: less than one and a half times the plane's value, 2: more. */
+static INLINE uint32_t tier(uint32_t known, uint32_t plane)
+{
+	return (uint32_t)(known != 0) + (uint32_t)(known >> plane >= 6);
+}
+
+/* Where one unit works. */
+struct place {
+	struct planes *planes;
+	struct plane_contexts *contexts;
+	struct mixed_coder *coder;
+	uint32_t plane, field, harmonic, chroma;
+	uint32_t depth, harmonic_class;
+	size_t blocks;                 /* of a plane, padding included: from harmonic to harmonic */
+	uint32_t *slot;                /* of this field and harmonic */
+	uint8_t *active;
+	const uint32_t *other_slot[2]; /* the other fields' */
+	const uint32_t *first_slot;
+	const uint8_t *first_active, *second_active; /* of fields 0 and 1, for fields after them */
+};
+
+/*
+ * The block at hand with a ring of its neighbours' cells, cell (y, x) at [y + 1][x + 1], and the blocks at the same place in
+ * other harmonics and fields. Lanes behind the band's end are 0.
+ */
+enum { VIEW_STRIDE = 16 };
+struct block_view {
+	uint32_t known[BLOCK_EDGE + 2][VIEW_STRIDE];
+	uint8_t sign[BLOCK_EDGE + 2][VIEW_STRIDE];
+	const struct plane_block *before2, *before, *after, *after2, *other[2], *first;
+	const uint32_t *parent; /* of cell (0, 0) */
+	const int32_t *level;   /* encoder only */
+	uint32_t parent_shift, orientation, band;
+};
+
+static INLINE uint32_t other_active(const struct place *u, size_t at)
+{
+	return (u->field > 0 ? u->first_active[at] : 0u) + (u->field > 1 ? u->second_active[at] : 0u);
+}
+
+static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_t b, size_t at, uint32_t bit)
+{
+	struct plane_contexts *c = u->contexts;
+	const struct band *band = &u->planes->bands.band[b];
+	const uint8_t *flag = u->active + at;
+	const size_t next = u->blocks;
+	const uint32_t near = (uint32_t)flag[-(ptrdiff_t)next] + flag[next];
+	const uint32_t alike = (uint32_t)flag[-2 * (ptrdiff_t)next] + flag[2 * next];
+	const uint32_t others = other_active(u, at);
+	uint32_t parent = 1;
+
+	if (band->parent >= 0) {
+		const struct band *above = &u->planes->bands.band[band->parent];
+		parent = u->active[above->block_at - above->block_stride - 1];
+	}
+	if (!(near | alike | others) && (!parent || band->parent < 0))
+		return mixed_bit_alone(u->coder, decode, &c->quiet.band[u->harmonic_class * 2 + u->chroma], bit);
+	return mixed_bit_pair(u->coder, decode, &c->mixed.band[0][(((near * 3 + alike) * 2 + parent) * 3 + others) * 2 + u->chroma],
+	                      &c->mixed.band[1][(near + alike) * BANDS_MAX + b], bit);
+}
+
+static INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32_t b, uint32_t y, uint32_t x, size_t at, uint32_t bit)
+{
+	struct plane_contexts *c = u->contexts;
+	const struct band *band = &u->planes->bands.band[b];
+	const uint8_t *flag = u->active + at;
+	const size_t next = u->blocks;
+	/* The padding holds the band's own flag in one corner, so the border is tested after all. */
+	const uint32_t left = x ? flag[-1] : 0, up = y ? flag[-(ptrdiff_t)band->block_stride] : 0;
+	const uint32_t right = x + 1 < band->block_columns ? flag[1] : 0, down = y + 1 < band->block_rows ? flag[band->block_stride] : 0;
+	const uint32_t beside = left + up + right + down;
+	const uint32_t corners = (x && y ? flag[-(ptrdiff_t)band->block_stride - 1] : 0u) +
+	                         (y && x + 1 < band->block_columns ? flag[-(ptrdiff_t)band->block_stride + 1] : 0u);
+	const uint32_t near = (uint32_t)flag[-(ptrdiff_t)next] + flag[next];
+	const uint32_t alike = (uint32_t)flag[-2 * (ptrdiff_t)next] + flag[2 * next];
+	const uint32_t others = other_active(u, at);
+	uint32_t parent = 0;
+
+	if (band->parent >= 0) {
+		const struct band *above = &u->planes->bands.band[band->parent];
+		uint32_t py = y >> band->parent_shift, px = x >> band->parent_shift;
+		py = py < above->block_rows ? py : above->block_rows - 1;
+		px = px < above->block_columns ? px : above->block_columns - 1;
+		parent = u->active[above->block_at + py * above->block_stride + px];
+	}
+	if (!(beside | corners | near | alike | others | parent))
+		return mixed_bit_alone(u->coder, decode, &c->quiet.block[(u->harmonic_class * BANDS_MAX + b) * 2 + u->chroma], bit);
+	return mixed_bit_pair(u->coder, decode, &c->mixed.block[0][(((beside * 3 + corners) * 3 + alike) * 3 + near) * 2 + parent],
+	                      &c->mixed.block[1][(((b * 3 + alike) * 3 + near) * 3 + others) * 2 + u->chroma], bit);
+}
+
+static INLINE void block_gather(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at, struct block_view *v)
+{
+	const struct planes *p = u->planes;
+	const struct band *band = &p->bands.band[b];
+	const struct plane_block *pool = p->pool;
+	const uint32_t *slot = u->slot + at;
+	const ptrdiff_t row = band->block_stride, next = (ptrdiff_t)u->blocks;
+	const struct plane_block *own = pool + slot[0], *left = pool + slot[-1], *right = pool + slot[1];
+	const struct plane_block *up = pool + slot[-row], *down = pool + slot[row];
+	enum { LAST = BLOCK_EDGE - 1, LAST_ROW = BLOCK_EDGE * LAST };
+
+	v->known[0][0] = pool[slot[-row - 1]].known[BLOCK_CELLS - 1];
+	v->known[0][BLOCK_EDGE + 1] = pool[slot[-row + 1]].known[LAST_ROW];
+	v->known[BLOCK_EDGE + 1][0] = pool[slot[row - 1]].known[LAST];
+	v->known[BLOCK_EDGE + 1][BLOCK_EDGE + 1] = pool[slot[row + 1]].known[0];
+	memcpy(&v->known[0][1], up->known + LAST_ROW, BLOCK_EDGE * sizeof(uint32_t));
+	memcpy(&v->sign[0][1], up->sign + LAST_ROW, BLOCK_EDGE);
+	memcpy(&v->known[BLOCK_EDGE + 1][1], down->known, BLOCK_EDGE * sizeof(uint32_t));
+	memcpy(&v->sign[BLOCK_EDGE + 1][1], down->sign, BLOCK_EDGE);
+	for (uint32_t y = 0; y < BLOCK_EDGE; y++) {
+		memcpy(&v->known[y + 1][1], own->known + y * BLOCK_EDGE, BLOCK_EDGE * sizeof(uint32_t));
+		memcpy(&v->sign[y + 1][1], own->sign + y * BLOCK_EDGE, BLOCK_EDGE);
+		v->known[y + 1][0] = left->known[y * BLOCK_EDGE + LAST];
+		v->sign[y + 1][0] = left->sign[y * BLOCK_EDGE + LAST];
+		v->known[y + 1][BLOCK_EDGE + 1] = right->known[y * BLOCK_EDGE];
+		v->sign[y + 1][BLOCK_EDGE + 1] = right->sign[y * BLOCK_EDGE];
+	}
+	v->before2 = pool + slot[-2 * next];
+	v->before = pool + slot[-next];
+	v->after = pool + slot[next];
+	v->after2 = pool + slot[2 * next];
+	v->other[0] = pool + u->other_slot[0][at];
+	v->other[1] = pool + u->other_slot[1][at];
+	v->first = pool + u->first_slot[at];
+	v->parent = pool->known;
+	v->parent_shift = band->parent_shift;
+	v->orientation = band->orientation;
+	v->band = b;
+	if (band->parent >= 0) {
+		/* The parents of a block's cells lie in one block: in all of it, or in a quarter. */
+		const struct band *above = &p->bands.band[band->parent];
+		const uint32_t s = band->parent_shift, edge = s ? BLOCK_EDGE / 2 : 0;
+		v->parent = pool[u->slot[above->block_at + (by >> s) * above->block_stride + (bx >> s)]].known + (by & 1) * edge * BLOCK_EDGE + (bx & 1) * edge;
+	}
+	v->level = decode ? NULL : p->levels[p->level_slot[u->field][(size_t)(u->harmonic + 2) * p->bands.blocks + at]];
+}
+
+static INLINE void block_scatter(const struct block_view *v, struct plane_block *own)
+{
+	for (uint32_t y = 0; y < BLOCK_EDGE; y++) {
+		memcpy(own->known + y * BLOCK_EDGE, &v->known[y + 1][1], BLOCK_EDGE * sizeof(uint32_t));
+		memcpy(own->sign + y * BLOCK_EDGE, &v->sign[y + 1][1], BLOCK_EDGE);
+	}
+}
+
+static INLINE uint32_t code_sign(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t x, uint32_t bit)
+{
+	struct plane_contexts *c = u->contexts;
+	const uint8_t *s = &v->sign[y + 1][x + 1];
+	const uint32_t k = y * BLOCK_EDGE + x, first = u->field ? v->first->sign[k] : 0;
+	mixer_context *const context[MIXER_INPUTS] = {
+		&c->mixed.sign[0][(s[-1] * 3u + s[-VIEW_STRIDE]) * BANDS_MAX + v->band],
+		&c->mixed.sign[1][((v->before2->sign[k] * 3u + v->after2->sign[k]) * 3 + v->before->sign[k]) * 3 + first],
+		&c->mixed.sign[2][(((s[-1] * 3u + s[1]) * 3 + s[-VIEW_STRIDE]) * 3 + s[VIEW_STRIDE]) * 4 + v->orientation],
+		&c->mixed.sign[3][(first * 2 + (u->field > 1)) * BANDS_MAX + v->band],
+	};
+	return mixed_bit(u->coder, decode, context, &c->sign_weights[u->chroma], bit);
+}
+
+/*
+ * What stands around the cells of one row of a block before the row is coded, eight lanes at once: everything but for what changes
+ * in the row itself.
+ */
+struct row_view {
+	uint32_t around[BLOCK_EDGE];                   /* not yet divided by the plane's value, as the left neighbour may change */
+	uint32_t along[BLOCK_EDGE];
+	uint32_t rest[BLOCK_EDGE];                     /* 0 where along, the parent and the other fields are */
+	uint32_t beyond[BLOCK_EDGE];                   /* sizes of the parent in 4 classes and of the other fields in 8 */
+	uint32_t beside[BLOCK_EDGE], ring[BLOCK_EDGE]; /* tiers of (up, right, down) and of (before2, after2, before, after) */
+};
+
+/* size(v) / 4 and size(v) / 2, by comparisons, which vectorise */
+static INLINE uint32_t size_quarter(uint32_t v)
+{
+	return (uint32_t)(v >= 4) + (uint32_t)(v >= 26) + (uint32_t)(v >= 162);
+}
+
+static INLINE uint32_t size_half(uint32_t v)
+{
+	return (uint32_t)(v >= 2) + (uint32_t)(v >= 4) + (uint32_t)(v >= 11) + (uint32_t)(v >= 26) + (uint32_t)(v >= 64) + (uint32_t)(v >= 162) + (uint32_t)(v >= 407);
+}
+
+/* Returns 0 when nothing around any of the row's cells, nor the cells themselves, are known to differ from 0; then only `around` is set. */
+static INLINE uint32_t row_look(uint32_t plane, const struct block_view *v, uint32_t y, uint32_t width, struct row_view *out)
+{
+	const uint32_t *k = &v->known[y + 1][1], *up = k - VIEW_STRIDE, *down = k + VIEW_STRIDE;
+	const uint32_t *before2 = v->before2->known + y * BLOCK_EDGE, *before = v->before->known + y * BLOCK_EDGE;
+	const uint32_t *after = v->after->known + y * BLOCK_EDGE, *after2 = v->after2->known + y * BLOCK_EDGE;
+	const uint32_t *first = v->other[0]->known + y * BLOCK_EDGE, *second = v->other[1]->known + y * BLOCK_EDGE;
+	const uint32_t *above = v->parent + (y >> v->parent_shift) * BLOCK_EDGE;
+	uint32_t parent[BLOCK_EDGE], others[BLOCK_EDGE], any = 0;
+
+	for (uint32_t i = 0; i < BLOCK_EDGE; i++)
+		parent[i] = i < width ? above[i >> v->parent_shift] : 0; /* the parent's band may be wider */
+	for (int i = 0; i < BLOCK_EDGE; i++) {
+		out->around[i] = 2 * (k[i - 1] + k[i + 1] + up[i] + down[i]) + up[i - 1] + up[i + 1] + down[i - 1] + down[i + 1];
+		out->along[i] = 2 * (before2[i] + after2[i]) + before[i] + after[i];
+		others[i] = first[i] + second[i];
+		out->rest[i] = out->along[i] | others[i] | parent[i];
+		any |= k[i] | out->around[i] | out->rest[i];
+	}
+	if (!any)
+		return 0;
+	for (int i = 0; i < BLOCK_EDGE; i++) {
+		out->along[i] >>= plane;
+		out->beyond[i] = size_quarter(parent[i] >> plane) * (SIZES / 2) + size_half(others[i] >> plane);
+		out->beside[i] = (tier(up[i], plane) * 3 + tier(k[i + 1], plane)) * 3 + tier(down[i], plane);
+		out->ring[i] = ((tier(before2[i], plane) * 3 + tier(after2[i], plane)) * 3 + tier(before[i], plane)) * 3 + tier(after[i], plane);
+	}
+	return any;
+}
+
+static INLINE uint32_t quiet_index(const struct place *u, uint32_t b, uint32_t fresh)
+{
+	return (((u->harmonic_class * BANDS_MAX + b) * 3 + u->depth) * 2 + u->chroma) * 2 + fresh;
+}
+
+/* This plane's bit of cell (y, x) and those above; encoder only. */
+static INLINE uint32_t level_above(const struct place *u, const struct block_view *v, uint32_t y, uint32_t x)
+{
+	return (uint32_t)abs(v->level[y * BLOCK_EDGE + x]) >> u->plane;
+}
+
+/* The cell's level is not 0 from this plane on. */
+static INLINE void cell_begin(const struct place *u, int decode, struct block_view *v, uint32_t y, uint32_t x)
+{
+	v->sign[y + 1][x + 1] = (uint8_t)(1 + code_sign(u, decode, v, y, x, !decode && v->level[y * BLOCK_EDGE + x] < 0));
+	v->known[y + 1][x + 1] = (4u << u->plane) | (u->plane ? 2u << u->plane : 0);
+}
+
+/* One level's bit of this plane; `around` as it is now. */
+static INLINE void code_cell(const struct place *u, int decode, struct block_view *v, const struct row_view *row, uint32_t y, uint32_t x,
+                             uint32_t around, uint32_t fresh)
+{
+	struct plane_contexts *c = u->contexts;
+	const uint32_t plane = u->plane, b = v->band, along = row->along[x];
+	uint32_t *k = &v->known[y + 1][x + 1];
+	const uint32_t target = decode ? 0 : level_above(u, v, y, x);
+
+	if (*k) {
+		const uint32_t value = *k >> (plane + 3), tall = value < 4 ? value : value < 8 ? 4 : 5; /* value: the planes above this one */
+		const uint32_t bit = mixed_bit_pair(u->coder, decode, &c->mixed.refine[0][(tall * SIZES + size_of(c, along)) * 2 + u->chroma],
+		                                    &c->mixed.refine[1][(tall * BANDS_MAX + b) * SIZES + size_of(c, (around + along) >> 1)], target & 1);
+		*k = (value << 1 | bit) << (plane + 2) | (plane ? 2u << plane : 0);
+		return;
+	}
+	uint32_t bit;
+	if (!(around | row->rest[x])) {
+		bit = mixed_bit_alone(u->coder, decode, &c->quiet.cell[quiet_index(u, b, fresh)], target);
+	} else {
+		const uint32_t sizes = (row->beyond[x] * SIZES + size_of(c, around)) * SIZES + size_of(c, along);
+		bit = mixed_bit_pair(u->coder, decode, &c->mixed.zero[0][sizes * 2 + u->chroma],
+		                     &c->mixed.zero[1][(row->ring[x] * 3 + tier(k[-1], plane)) * 27 + row->beside[x]], target);
+	}
+	if (bit)
+		cell_begin(u, decode, v, y, x);
+}
+
+/*
+ * A row with nothing around it: one bit tells whether all of it stays 0, else where the first one is that does not. Returns
+ * that one's place, or the width.
+ */
+static INLINE uint32_t code_quiet_row(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t width, uint32_t fresh)
+{
+	struct plane_contexts *c = u->contexts;
+	uint32_t place = 0;
+
+	while (!decode && place < width && !level_above(u, v, y, place))
+		place++;
+	if (!mixed_bit_alone(u->coder, decode, &c->quiet.row[quiet_index(u, v->band, fresh)], place < width))
+		return width;
+	for (uint32_t i = 0; i + 1 < width; i++)
+		if (mixed_bit_alone(u->coder, decode, &c->mixed.first[width - 1 - i], i == place))
+			return i;
+	return width - 1;
+}
+
+static INLINE void code_row(const struct place *u, int decode, struct block_view *v, uint32_t y, uint32_t width, uint32_t fresh)
+{
+	struct row_view row;
+	uint32_t start = 0, change = 0; /* twice what has been added to the left neighbour since the look */
+
+	if (!row_look(u->plane, v, y, width, &row)) {
+		start = code_quiet_row(u, decode, v, y, width, fresh);
+		if (start == width)
+			return;
+		cell_begin(u, decode, v, y, start);
+		change = 2 * v->known[y + 1][1 + start++];
+		for (uint32_t i = 0; i < BLOCK_EDGE; i++)
+			row.beyond[i] = row.beside[i] = row.ring[i] = 0;
+	}
+	for (uint32_t x = start; x < width; x++) {
+		const uint32_t before = v->known[y + 1][x + 1];
+		code_cell(u, decode, v, &row, y, x, (row.around[x] + change) >> u->plane, fresh);
+		change = 2 * (v->known[y + 1][x + 1] - before);
+	}
+}
+
+static INLINE void code_block(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at, uint32_t fresh)
+{
+	const struct band *band = &u->planes->bands.band[b];
+	const uint32_t x = bx * BLOCK_EDGE, y = by * BLOCK_EDGE;
+	const uint32_t width = x + BLOCK_EDGE < band->columns ? BLOCK_EDGE : band->columns - x;
+	const uint32_t height = y + BLOCK_EDGE < band->rows ? BLOCK_EDGE : band->rows - y;
+	struct block_view view;
+
+	block_gather(u, decode, b, by, bx, at, &view);
+	for (uint32_t i = 0; i < height; i++)
+		code_row(u, decode, &view, i, width, fresh);
+	block_scatter(&view, &u->planes->pool[u->slot[at]]);
+}
+
+static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32_t unit, int decode)
+{
+	const uint32_t harmonics = p->dims.phi_d, field = unit / harmonics % 3, harmonic = unit % harmonics;
+	const uint32_t plane = p->planes - 1 - unit / (3 * harmonics);
+	const size_t block0 = (size_t)(harmonic + 2) * p->bands.blocks;
+	const struct place u = {
+		.planes = p, .contexts = p->contexts, .coder = coder, .plane = plane, .field = field, .harmonic = harmonic,
+		.chroma = field > 0, .depth = plane == 0 ? 0 : plane < 3 ? 1 : 2, .harmonic_class = harmonic_class(harmonic),
+		.blocks = p->bands.blocks, .slot = p->slot[field] + block0, .active = p->active[field] + block0,
+		.other_slot = {p->slot[field == 0] + block0, p->slot[field == 2 ? 1 : 2] + block0},
+		.first_slot = p->slot[0] + block0, .first_active = p->active[0] + block0, .second_active = p->active[1] + block0,
+	};
+	const uint8_t *top = decode ? NULL : p->top[field] + block0;
+
+	for (uint32_t b = 0; b < p->bands.count; b++) {
+		const struct band *band = &p->bands.band[b];
+		const size_t own = band->block_at - band->block_stride - 1; /* the band's flag */
+		if (!u.active[own]) {
+			if (!code_band_flag(&u, decode, b, own, !decode && top[own] > plane))
+				continue;
+			u.active[own] = 1;
+		}
+		for (uint32_t by = 0; by < band->block_rows; by++)
+			for (uint32_t bx = 0; bx < band->block_columns; bx++) {
+				const size_t at = band->block_at + (size_t)by * band->block_stride + bx;
+				const uint32_t fresh = !u.active[at];
+				if (fresh) {
+					if (!code_block_flag(&u, decode, b, by, bx, at, !decode && top[at] > plane))
+						continue;
+					u.active[at] = 1;
+					u.slot[at] = p->pool_count++;
+				}
+				code_block(&u, decode, b, by, bx, at, fresh);
+			}
+	}
+}
+
+void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit)
+{
+	unit_code(planes, coder, unit, 0);
+}
+
+void planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit)
+{
+	/* A copy that nothing else points to can stay in registers. */
+	struct mixed_coder own = *coder;
+	unit_code(planes, &own, unit, 1);
+	*coder = own;
+}
