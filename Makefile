@@ -61,8 +61,10 @@ help:
 	@echo "  tests        builds the unit tests"
 	@echo "  check-cli    command-line tests only (tests/cli)"
 	@echo "  check-symbols  every public symbol begins with bp_"
-	@echo "  bench        build, decode, list and verify times beside cat (src/bench); run time against error"
-	@echo "  bench-build  the first half of it; bench-methods: the second, $(BUILD)/bench/bench-methods.tsv, .svg"
+	@echo "  bench        the three that follow"
+	@echo "  bench-build  build, extract, list and verify times beside cat"
+	@echo "  bench-stages where a build's time goes: read, clean, regression, transform, code, measure; both profiles"
+	@echo "  bench-methods  run time against error, every method: $(BUILD)/bench/bench-methods.tsv, .svg"
 	@echo "  bench-eval   load, evaluate and sample beside the raw table"
 	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
 	@echo "  stress       hundreds of adversarial materials: one table of what holds (a few minutes)"
@@ -219,10 +221,14 @@ bench-eval: bench-data $(BUILD)/bench/brdfpack-bench-eval
 	$(Q)[ -f $(BENCH_OUT)/eval.bpk ] || { mkdir -p $(BENCH_OUT) && $(BUILD)/brdfpack build -q -o $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo); }
 	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BUILD)/bench/brdfpack-bench-eval $(BENCH_EVAL_FLAGS) $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo)
 
-bench: bench-build
+# of the two scripts: --runs N, --names FILE
+BENCH_BUILD_FLAGS ?=
+bench: bench-build bench-stages
 	$(Q)$(MAKE) --no-print-directory bench-methods
 bench-build: bench-data
-	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_build.py --label "$(BENCH_LABEL)" $(or $(BENCH_DATA),$(BENCH_DEMO))
+	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_build.py --label "$(BENCH_LABEL)" $(BENCH_BUILD_FLAGS) $(or $(BENCH_DATA),$(BENCH_DEMO))
+bench-stages: bench-data
+	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_stages.py --label "$(BENCH_LABEL)" $(BENCH_BUILD_FLAGS) $(or $(BENCH_DATA),$(BENCH_DEMO))
 
 $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
 	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
@@ -247,5 +253,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults fuzz install uninstall clean FORCE
+.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults fuzz install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -5,6 +5,7 @@
 
 #include "../error.h"
 #include "../model/fidelity.h"
+#include "../stage.h"
 #include "name.h"
 #include "profile_codec.h"
 
@@ -193,16 +194,19 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 	bp_status status;
 
 	request.record_bytes_max = record_bytes_max;
+	stage_enter(STAGE_CODE);
 	status = packing->codec->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, &decoded,
 	                                error);
 	if (status)
 		goto out;
 	/* Once to have the bytes that are decoded, once more with what was measured on them. */
 	status = record_write(&packed.head, &sections, &packed.record, &packed.bytes, error);
+	stage_enter(STAGE_MEASURE);
 	if (!status)
 		status = layers_measure(&packed.head, packed.record, packing->lattice, decoded, error);
 	free(packed.record);
 	packed.record = NULL;
+	stage_enter(STAGE_CODE);
 	if (!status)
 		status = record_write(&packed.head, &sections, &packed.record, &packed.bytes, error);
 	if (!status && packed.bytes > record_bytes_max) {
@@ -215,6 +219,7 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 out:
 	section_list_free(&sections);
 	model_free(decoded);
+	stage_enter(STAGE_REST);
 	return status;
 }
 

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "../error.h"
+#include "../stage.h"
 #include "default_model.h"
 #include "kernels.h"
 #include "robust.h"
@@ -174,16 +175,19 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 	if (!fitted)
 		return error_memory(error, sizeof *fitted);
 	model->layer_count = 1;
+	stage_enter(STAGE_CLEAN);
 	fitted->unit = unit_for(largest_value(lattice));
 	fitted->coefficient[0] = malloc(3 * cells * sizeof(float));
 	if (!fitted->coefficient[0])
 		return error_memory(error, 3 * cells * sizeof(float));
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
+	stage_enter(STAGE_REGRESSION);
 	status = colour_fit(lattice, model, error);
 	if (status)
 		return status;
 	status = spectrum_create(d, &spectrum, error);
+	stage_enter(STAGE_CLEAN);
 	for (int c = 0; !status && c < 3; c++) {
 		const double factor = 1 / (fitted->unit * (double)DEFAULT_OFFSET);
 		const double sum = kernels->default_logs(lattice->rgb[c], lattice->valid, cells, factor, fitted->coefficient[c]);
@@ -191,6 +195,7 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 	}
 	if (!status)
 		status = default_fill(d, lattice->valid, fitted->coefficient, error);
+	stage_enter(STAGE_TRANSFORM);
 	for (int c = 0; !status && c < 3; c++)
 		spectrum_forward(spectrum, fitted->coefficient[c], fitted->base[c]);
 	spectrum_free(spectrum);
@@ -201,6 +206,7 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d, fitted->coefficient[2] + r * d.phi_d};
 		kernels->default_rotate(x, d.phi_d, (const float(*)[3])fitted->rotation);
 	}
+	stage_enter(STAGE_CLEAN);
 	/* An error bound is a promise about the measured values, their noise included. */
 	for (int f = 0; !status && f < 3 && !(options->max_error > 0); f++)
 		status = default_denoise(d, fitted->coefficient[f], &fitted->noisy, error);

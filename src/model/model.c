@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "../error.h"
+#include "../stage.h"
 #include "default_model.h"
 #include "paper.h"
 
@@ -33,6 +34,7 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 	default:
 		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
 	}
+	stage_enter(STAGE_REST);
 	if (status)
 		model_free(model);
 	else

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "../error.h"
+#include "../stage.h"
 #include "copula.h"
 #include "field.h"
 #include "fill.h"
@@ -111,6 +112,7 @@ bp_status paper_fit(const struct lattice *lattice, const struct fit_options *opt
 	(void)options; /* the fractions are fixed; the record's budget is the codec's */
 	if (!paper)
 		return error_memory(error, sizeof *paper);
+	stage_enter(STAGE_CLEAN);
 	bp_status status = density_build(lattice, &density, error);
 	if (status)
 		goto out;
@@ -121,6 +123,7 @@ bp_status paper_fit(const struct lattice *lattice, const struct fit_options *opt
 		status = error_memory(error, lattice_cells(d) * sizeof *achromatic);
 		goto out;
 	}
+	stage_enter(STAGE_TRANSFORM);
 	status = marginal_fit(&density.axis[0], d.theta_h, false, &paper->marginal[0], &means[0], error);
 	status = status ? status : marginal_fit(&density.axis[1], d.theta_d, false, &paper->marginal[1], &means[1], error);
 	status = status ? status : marginal_fit(&density.axis[2], d.phi_d, true, &paper->marginal[2], &means[2], error);
@@ -134,6 +137,7 @@ bp_status paper_fit(const struct lattice *lattice, const struct fit_options *opt
 		goto out;
 	density_free(&density);
 	status = paper_achromatic(paper, d, PAPER_LAYERS, achromatic, error);
+	stage_enter(STAGE_REGRESSION);
 	status = status ? status : robust_fit_colour(lattice, achromatic, paper->scale, model->colour, error);
 	model->layer_count = PAPER_LAYERS;
 out:

@@ -115,6 +115,7 @@ static void result_take(void *user, const struct job_result *result)
 	if (!outcome)
 		return;
 	outcome->seconds = result->seconds;
+	memcpy(outcome->stage_seconds, result->stage_seconds, sizeof outcome->stage_seconds);
 	outcome->error = result->error;
 	if (!outcome->error.status)
 		record_accept(build, item, result, &outcome->head, &outcome->error);

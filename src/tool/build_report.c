@@ -40,6 +40,10 @@ static void material_json(const struct item *item, const char *label, const stru
 		int count = warnings_list(&outcome->head, warnings);
 		json_integer(&json, "bytes", outcome->head.record_bytes);
 		json_number(&json, "seconds", outcome->seconds);
+		json_object(&json, "cpu_seconds");
+		for (int stage = 0; stage < STAGE_COUNT; stage++)
+			json_number(&json, stage_name((enum stage)stage), outcome->stage_seconds[stage]);
+		json_close(&json);
 		json_string(&json, "profile", profile_name(outcome->head.profile));
 		facts_brief(&json, &outcome->head);
 		json_array(&json, "warnings");

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "../codec/record.h"
+#include "../stage.h"
 #include "build.h"
 #include "items.h"
 
@@ -15,6 +16,7 @@
 struct outcome {
 	bp_error error; /* status BP_OK: packed, and head is filled */
 	double seconds; /* in the worker */
+	double stage_seconds[STAGE_COUNT];
 	struct record_head head;
 };
 

@@ -3,6 +3,7 @@
 #include "../archive/merge.h"
 #include "../error.h"
 #include "../merl/sha256.h"
+#include "../stage.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -48,6 +49,13 @@ static void test_hooks(const struct job *job)
 		sleep((unsigned)atoi(seconds));
 }
 
+static void checksum_add(void *user, const void *bytes, size_t count)
+{
+	const enum stage before = stage_enter(STAGE_CHECKSUM);
+	sha256_add(user, bytes, count);
+	stage_enter(before);
+}
+
 bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	static struct source_cursor cursor; /* this process's own: it keeps a zip open from member to member */
@@ -60,16 +68,18 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record
 
 	test_hooks(job);
 	cursor.any_dims = build->options->any_lattice;
+	stage_enter(STAGE_READ);
 	sha256_start(&sha);
 	if (fd >= 0)
-		status = lattice_read(slot_read, &slot, sha256_add, &sha, build->options->any_lattice, &lattice, error);
+		status = lattice_read(slot_read, &slot, checksum_add, &sha, build->options->any_lattice, &lattice, error);
 	else
-		status = source_item_read(&build->sources.items[job->number], &cursor, sha256_add, &sha, &lattice, error);
+		status = source_item_read(&build->sources.items[job->number], &cursor, checksum_add, &sha, &lattice, error);
 	if (status)
 		return status;
 	source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
 	source.nonfinite_count = lattice.nonfinite_count;
 	sha256_finish(&sha, source.sha256);
+	stage_enter(STAGE_REST);
 	if (build->previous) {
 		status = archive_reuse(build->previous, job->name, &source, &build->options->fit, record, record_bytes, error);
 		if (status || *record) {

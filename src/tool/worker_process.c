@@ -57,7 +57,7 @@ struct job_frame {
 struct result_frame {
 	uint32_t magic, status;
 	uint64_t number, offset;
-	double seconds;
+	double seconds, stage_seconds[STAGE_COUNT];
 	uint32_t message_bytes, record_bytes;
 };
 
@@ -115,9 +115,12 @@ static _Noreturn void worker_main(const struct worker_setup *setup, int job_fd, 
 		bp_error error = {.status = BP_OK, .offset = BP_NO_OFFSET};
 		uint8_t *record = NULL;
 		size_t record_bytes = 0;
+		struct stage_clock clock;
 		double start = clock_seconds();
+		stage_clock_start(&clock);
 		bp_status status = setup->work(setup->work_user, &job, in.slot >= 0 ? setup->slot_fd[in.slot] : -1, &record,
 		                               &record_bytes, &error);
+		stage_clock_stop();
 		struct result_frame out = {.magic = RESULT_MAGIC,
 		                           .status = (uint32_t)status,
 		                           .number = in.number,
@@ -125,6 +128,7 @@ static _Noreturn void worker_main(const struct worker_setup *setup, int job_fd, 
 		                           .seconds = clock_seconds() - start,
 		                           .message_bytes = status ? (uint32_t)strlen(error.message) : 0,
 		                           .record_bytes = status ? 0 : (uint32_t)record_bytes};
+		memcpy(out.stage_seconds, clock.seconds, sizeof out.stage_seconds);
 		if (!write_whole(result_fd, &out, sizeof out) || !write_whole(result_fd, error.message, out.message_bytes) ||
 		    (out.record_bytes && !write_whole(result_fd, record, out.record_bytes)))
 			_exit(1);
@@ -218,8 +222,8 @@ void worker_send(struct worker *worker, struct kept_job *kept)
 /* What the buffer holds: 1 a whole result, 0 a part of one, -1 nonsense. */
 static int result_check(const struct worker *worker, struct result_frame *frame)
 {
-	if (worker->used < sizeof *frame)
-		return 0;
+	if (worker->used < sizeof *frame) /* nonsense may be shorter than a frame, and then nothing more comes */
+		return worker->used >= sizeof frame->magic && memcmp(worker->buffer, &(uint32_t){RESULT_MAGIC}, sizeof frame->magic) ? -1 : 0;
 	memcpy(frame, worker->buffer, sizeof *frame);
 	if (!worker->current || frame->magic != RESULT_MAGIC || frame->number != worker->current->job.number ||
 	    frame->message_bytes >= sizeof ((bp_error *)0)->message || frame->record_bytes > WORKER_RECORD_BYTES_MAX)
@@ -259,6 +263,7 @@ enum worker_news worker_receive(struct worker *worker, struct job_result *result
 		                              .seconds = frame.seconds,
 		                              .record = payload + frame.message_bytes,
 		                              .record_bytes = frame.record_bytes};
+		memcpy(result->stage_seconds, frame.stage_seconds, sizeof result->stage_seconds);
 		result->error.status = (bp_status)frame.status;
 		result->error.offset = frame.offset;
 		memcpy(result->error.message, payload, frame.message_bytes);

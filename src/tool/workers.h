@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "../brdfpack.h"
+#include "../stage.h"
 
 enum { WORKERS_MAX = 256, WORKER_RECORD_BYTES_MAX = 1 << 24, WORKER_NAME_BYTES_MAX = 255 };
 
@@ -30,6 +31,7 @@ typedef bp_status worker_fn(void *user, const struct job *job, int fd, uint8_t *
 struct job_result {
 	uint64_t number;
 	double seconds;     /* in the worker */
+	double stage_seconds[STAGE_COUNT]; /* of its processor; stage.h */
 	bp_error error;     /* error.status BP_OK: there is a record */
 	const uint8_t *record; /* until the callback returns */
 	size_t record_bytes;

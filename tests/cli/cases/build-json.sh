@@ -10,6 +10,9 @@ for line in open("lines"):
         continue
     d = json.loads(line, parse_constant=lambda c: 1 / 0)
     d.pop("seconds", None)
+    stages = d.pop("cpu_seconds", None)
+    if stages:
+        print(list(stages), min(stages.values()) >= 0)
     if "errors" in d:
         d["errors"] = sorted(d["errors"])
         d["parameters"] = {c: sorted(p) for c, p in d["parameters"].items()}

@@ -1,0 +1,45 @@
+"""What every benchmark prints on top: machine, compiler, commit, command and data."""
+import glob
+import os
+import platform
+import subprocess
+import sys
+
+TOOL = os.environ.get("BRDFPACK", "build/brdfpack")
+
+
+def text_of(*command):
+    try:
+        return subprocess.run(command, capture_output=True, text=True).stdout.split("\n")[0]
+    except OSError:
+        return "unknown"
+
+
+def machine():
+    for line in open("/proc/cpuinfo"):
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.processor()
+
+
+def materials(folder, names=None):
+    """The MERL files of a folder, all or those whose stems stand in a file; the demo set is written where there is no such folder."""
+    if not os.path.isdir(folder):
+        subprocess.run([TOOL, "synth", folder], check=True)
+    files = sorted(glob.glob(os.path.join(folder, "*.binary")))
+    if names:
+        wanted = {line.split("\t")[0].strip() for line in open(names)}
+        files = [f for f in files if os.path.basename(f)[:-len(".binary")] in wanted]
+    if not files:
+        sys.exit("%s: no *.binary files%s" % (folder, " of those names" if names else ""))
+    return files
+
+
+def print_head(script, files, label, runs, prefix="# "):
+    for key, value in (
+            ("machine", "%s, %d usable cores, load %.1f" % (machine(), len(os.sched_getaffinity(0)), os.getloadavg()[0])),
+            ("compiler", text_of("cc", "--version")),
+            ("commit", text_of("git", "describe", "--always", "--dirty")),
+            ("command", "%s %s" % (script, " ".join(sys.argv[1:]))),
+            ("data", "%d files of %s, %.0f MB; medians of %d runs" % (len(files), label, sum(map(os.path.getsize, files)) / 1e6, runs))):
+        print("%s%-10s %s" % (prefix, key, value))
