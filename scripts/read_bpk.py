@@ -615,7 +615,7 @@ def inverse_lift(x):
     return z
 
 
-DEFAULT_KINDS = {(16, 0, 1), (17, 1, 2)}
+DEFAULT_KINDS = {(16, 0, 2), (17, 1, 2)}
 
 
 def decode_default(record, layers):
@@ -626,7 +626,7 @@ def decode_default(record, layers):
     demand(len(data) == 76, "corrupt", record.base, "the fields' bytes")
     unit, *rotation, step, c0, c1, c2, count = struct.unpack("<d12fffffI", data)
     base, rotation = rotation[:3], rotation[3:]
-    demand(unit > 0 and math.isfinite(unit) and math.frexp(unit)[0] == 0.5 and math.frexp(unit)[1] <= 981 and all(abs(x) <= 64 for x in base) and
+    demand(2.0 ** -1022 <= unit <= 2.0 ** 999 and all(abs(x) <= 64 for x in base) and
            all(abs(r) <= 1.001 for r in rotation) and
            0 < step <= 2.0 ** 40 and all(abs(c) <= 1 for c in (c0, c1, c2)) and count <= 24, "corrupt", record.base, "fields")
     planes, end = Planes(record.dims, count), 0
@@ -663,15 +663,15 @@ def decode_default(record, layers):
                     plane[y][:columns] = inverse_lift(plane[y][:columns])
         fields.append(spectra)
     basis = [[math.sqrt((2 if m else 1) / p) * math.cos(math.pi * m * (2 * k + 1) / (2 * p)) for k in range(p)] for m in range(p)]
-    rgb = [[], [], []]
+    rgb, most = [[], [], []], min(40.0, 1011.0 - math.frexp(unit)[1])
     for i in range(h):
         for j in range(d):
             lines = [[(s[m][i][j], basis[m]) for m in range(p) if s[m][i][j]] for s in fields]
             for k in range(p):
                 y = [sum(x * line[k] for x, line in terms) for terms in lines]
                 for c in range(3):
-                    l = min(max(base[c] + sum(rotation[3 * f + c] * y[f] for f in range(3)), 0.0), 40.0)
-                    rgb[c].append(unit * (math.expm1(l * math.log(2)) / 512))
+                    l = min(max(base[c] + sum(rotation[3 * f + c] * y[f] for f in range(3)), 0.0), most)
+                    rgb[c].append(unit * math.expm1(l * math.log(2)))
     return rgb
 
 

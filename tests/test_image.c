@@ -136,6 +136,22 @@ static void a_pfm_file_holds_the_bottom_row_first(void **state)
 	assert_memory_equal(bytes + 10, SIX, 4);
 	static const unsigned char ZERO[4] = {0, 0, 0, 0};
 	assert_memory_equal(bytes + 10 + 24, ZERO, 4);
+	/* In another unit: the same bytes where float can hold the values, else the unit as the scale. */
+	image.unit = 0.5;
+	for (int n = 0; n < 12; n++)
+		image.rgb[n] = (float)(2 * n);
+	unsigned char again[128];
+	assert_int_equal(image_write_pfm(path, &image, &error), BP_OK);
+	file = fopen(path, "rb");
+	assert_int_equal(fread(again, 1, sizeof again, file), 10 + 48);
+	fclose(file);
+	assert_memory_equal(again, bytes, 58);
+	image.unit = 1e300;
+	assert_int_equal(image_write_pfm(path, &image, &error), BP_OK);
+	file = fopen(path, "rb");
+	assert_int_equal(fread(again, 1, sizeof again, file), 15 + 48);
+	fclose(file);
+	assert_memory_equal(again, "PF\n2 2\n-1e+300\n", 15);
 	unlink(path);
 	sphere_image_free(&image);
 }

@@ -141,7 +141,8 @@ static const struct vector VECTORS[] = {
 	{ "bad-section-missing", BP_ERROR_CORRUPT, "No marginals.", make_section_missing },
 	{ "bad-section-twice", BP_ERROR_CORRUPT, "The marginals twice.", make_section_twice },
 	{ "bad-default-planes", BP_ERROR_CORRUPT, "25 bit planes.", make_default_planes },
-	{ "bad-default-unit", BP_ERROR_CORRUPT, "A unit that is not a power of two.", make_default_unit },
+	{ "bad-default-unit", BP_ERROR_CORRUPT, "A unit above 2^999.", make_default_unit },
+	{ "bad-default-unit-least", BP_ERROR_CORRUPT, "A unit below 2^-1022.", make_default_unit_least },
 	{ "bad-default-end", BP_ERROR_CORRUPT, "More units than there are planes, fields and harmonics.", make_default_end },
 	{ "bad-default-early", BP_ERROR_CORRUPT, "A stream of planes that is longer than its units.", make_default_early },
 };

@@ -84,7 +84,8 @@ FIXTURE void vector_default_changed(const char *path, int section, size_t at, ui
 }
 
 static void make_default_planes(const char *path) { vector_default_changed(path, 0, 72, 25); }
-static void make_default_unit(const char *path) { vector_default_changed(path, 0, 0, 1); }
+static void make_default_unit(const char *path) { vector_default_changed(path, 0, 4, 0x7e700000); }
+static void make_default_unit_least(const char *path) { vector_default_changed(path, 0, 4, 0); }
 static void make_default_end(const char *path) { vector_default_changed(path, 1, 0, 3 * 4 * 24 + 1); }
 static void make_default_early(const char *path) { vector_default_changed(path, 1, 0, 5); }
 

@@ -15,10 +15,10 @@
 #include "default_planes.h"
 #include "profile_codec.h"
 
-enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, PLANES_VERSION = 2 };
+enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, FIELDS_VERSION = 2, PLANES_VERSION = 2 };
 
 static const struct section_kind KINDS[] = {
-	{ SECTION_FIELDS, CODEC_FIELDS, 1 },
+	{ SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION },
 	{ SECTION_PLANES, CODEC_PLANES, PLANES_VERSION },
 };
 
@@ -179,7 +179,7 @@ static bp_status step_search(struct encoding *e, struct lattice_dims d, int effo
 
 static void fields_write(const struct encoding *e, struct section_list *sections)
 {
-	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS, 1, 0, SECTION_REQUIRED, NAN);
+	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION, 0, SECTION_REQUIRED, NAN);
 	write_f64(out, e->model->unit);
 	for (int c = 0; c < 3; c++)
 		write_f32(out, e->model->base[c]);
@@ -265,7 +265,6 @@ static bp_status default_encode(const struct model *model, const struct encode_r
 static bp_status fields_read(const struct section_bytes *section, struct default_model *model, bp_error *error)
 {
 	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
-	int exponent;
 	if (section->entry->bytes != FIELDS_BYTES)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %d", section->entry->bytes, FIELDS_BYTES);
 	model->unit = read_f64(&in);
@@ -278,8 +277,8 @@ static bp_status fields_read(const struct section_bytes *section, struct default
 	for (int i = 0; i < 3; i++)
 		model->centre[i] = read_f32(&in);
 	model->planes = read_u32(&in);
-	if (!isfinite(model->unit) || frexp(model->unit, &exponent) != 0.5 || exponent < -1022 || exponent > 981)
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the unit is %g, not a power of two from 2^-1023 to 2^980", model->unit);
+	if (!(model->unit >= DEFAULT_UNIT_LEAST && model->unit <= DEFAULT_UNIT_MOST))
+		return error_set(error, BP_ERROR_CORRUPT, 0, "the unit is %g, not from %g to %g", model->unit, DEFAULT_UNIT_LEAST, DEFAULT_UNIT_MOST);
 	for (int c = 0; c < 3; c++)
 		if (!(fabsf(model->base[c]) <= 64))
 			return error_set(error, BP_ERROR_CORRUPT, 8, "a base is %g", (double)model->base[c]);

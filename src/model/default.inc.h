@@ -26,7 +26,7 @@ static double KERNEL(default_logs)(const double *b, const uint8_t *valid, size_t
 	for (size_t at = 0; at < n; at += PIECE) {
 		const size_t end = at + PIECE < n ? at + PIECE : n;
 		for (size_t k = at; k < end; k++) {
-			float l = fast_log2f(1 + (float)(b[k] * factor));
+			float l = fast_log2f((float)(1 + b[k] * factor)); /* rounded once */
 			out[k] = valid[k] ? l : 0;
 		}
 		sum += KERNEL(float_sum)(out + at, end - at);
@@ -87,20 +87,20 @@ static void KERNEL(default_moments)(const float *const x[3], size_t n, double su
 
 /* n cells of one channel */
 static inline __attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
-                                                                         const float rotation[3], float offset, float *restrict out)
+                                                                         const float rotation[3], float most, float *restrict out)
 {
 	const float *a = field[0] + at, *b = field[1] + at, *d = field[2] + at;
 
 	for (size_t k = 0; k < n; k++) {
 		float l = base + (rotation[0] * a[k] + rotation[1] * b[k] + rotation[2] * d[k]);
-		l = l > 40 ? 40 : l;
+		l = l > most ? most : l;
 		l = l > 0 ? l : 0; /* NaN becomes 0 as well */
-		out[k] = offset * (fast_exp2f_within(l) - 1);
+		out[k] = fast_exp2f_within(l) - 1;
 	}
 }
 
 static void KERNEL(default_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-                                   const float rotation[3][3], float offset, float *const rgb[3], size_t rgb_stride)
+                                   const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride)
 {
 	enum { BLOCK = 16 };
 
@@ -115,9 +115,9 @@ static void KERNEL(default_values)(const float *const field[3], size_t rows, siz
 				__builtin_prefetch(field[c] + (i + 16) * stride);
 			}
 			if (width >= BLOCK && stride == BLOCK)
-				KERNEL(channel_values)(field, i * stride, BLOCK, base[c], weight, offset, out);
+				KERNEL(channel_values)(field, i * stride, BLOCK, base[c], weight, most, out);
 			else
-				KERNEL(channel_values)(field, i * stride, width, base[c], weight, offset, out);
+				KERNEL(channel_values)(field, i * stride, width, base[c], weight, most, out);
 		}
 }
 

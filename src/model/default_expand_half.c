@@ -76,6 +76,7 @@ bp_status default_expand_half(const struct model *model, uint32_t layers, struct
 	struct narrow narrow[3] = {{0}};
 	struct spectrum_inverse *inverse = NULL;
 	struct default_terms terms = {0};
+	const float most = default_most(m->unit);
 	float *plane = memory_alloc(plane_bytes), *fields = malloc(3 * slice * sizeof(float));
 	bp_status status = plane && fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, plane_bytes);
 
@@ -90,7 +91,7 @@ bp_status default_expand_half(const struct model *model, uint32_t layers, struct
 		const float *const field[3] = {fields, fields + slice, fields + 2 * slice};
 		const size_t at = i * h.theta_d * h.phi_d;
 		float *const rgb[3] = {out->rgb[0] + at, out->rgb[1] + at, out->rgb[2] + at};
-		kernels->default_values(field, h.theta_d, h.phi_d, columns, m->base, (const float(*)[3])m->rotation, DEFAULT_OFFSET, rgb, h.phi_d);
+		kernels->default_values(field, h.theta_d, h.phi_d, columns, m->base, (const float(*)[3])m->rotation, most, rgb, h.phi_d);
 	}
 	out->unit = m->unit;
 	for (int f = 0; f < 3; f++) {

@@ -4,6 +4,9 @@
  *     logarithms -> fill -> spectrum, per channel -> rotation to the channels' principal axes -> noise drawn towards 0
  *
  * and, beside it, the paper's colour regression on the measured achromatic table.
+ *
+ * The only thing with a scale is the unit, and it scales with the table: multiply every value by s, and the logarithms, and
+ * all that is made of them, stay what they were.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,6 +17,7 @@
 #include "default_model.h"
 #include "kernels.h"
 #include "robust.h"
+#include "select.h"
 #include "spectrum.h"
 
 void default_free(struct default_model *model)
@@ -23,16 +27,6 @@ void default_free(struct default_model *model)
 	free(model->coefficient[0]); /* the three are one block */
 	free(model->levels);
 	free(model);
-}
-
-/* 1 for what BRDFs are like, otherwise the power of two above the largest value; 2^980, so that 2^31 units are a double. */
-static double unit_for(double largest)
-{
-	int exponent;
-	if (largest == 0 || (largest >= 0x1p-6 && largest <= 0x1p24))
-		return 1;
-	frexp(largest, &exponent);
-	return ldexp(1, exponent < -1000 ? -1000 : exponent > 980 ? 980 : exponent);
 }
 
 /* Eigenvectors of a symmetric matrix by Jacobi rotations: columns of v. */
@@ -100,10 +94,16 @@ static void rotation_find(float *const channel[3], size_t rows, size_t lanes, fl
 }
 
 /*
- * The paper's regression of each channel on the measured achromatic value. The fields carry colour, so these six numbers are a summary
- * here: SAMPLE cells, spread evenly over all angles, give them to a fraction of a percent and in a tenth of the time.
+ * Cells that stand for all: SAMPLE of them at least, where there are as many, spread evenly over all angles. Which ones depends
+ * on validity alone.
  */
 enum { SAMPLE = 1 << 16 };
+
+struct sample {
+	double *x;    /* the achromatic value; owns the block */
+	double *y[3]; /* the channels, one behind the other, n each */
+	size_t n;
+};
 
 static size_t common_divisor(size_t a, size_t b)
 {
@@ -115,21 +115,20 @@ static size_t common_divisor(size_t a, size_t b)
 	return a;
 }
 
-static bp_status colour_fit(const struct lattice *lattice, struct model *model, bp_error *error)
+static bp_status sample_draw(const struct lattice *lattice, struct sample *out, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims), p = lattice->dims.phi_d;
 	size_t every = lattice->valid_count / SAMPLE + 1, n = 0; /* one cell of so many; no common factor: another phi_d in every row */
-	double *x, *y[3];
-	bp_status status = BP_OK;
+	double *y[3];
 
 	while (common_divisor(every, p) != 1)
 		every++;
 	const size_t room = cells / every + 1;
-	x = malloc(room * 4 * sizeof *x);
-	if (!x)
-		return error_memory(error, room * 4 * sizeof *x);
-	for (int c = 0; c < 3; c++)
-		y[c] = x + (size_t)(c + 1) * room;
+	out->x = malloc(room * 4 * sizeof *out->x);
+	if (!out->x)
+		return error_memory(error, room * 4 * sizeof *out->x);
+	for (size_t c = 0; c < 3; c++)
+		y[c] = out->x + (c + 1) * room;
 	for (size_t i = 0; i < cells; i += every) {
 		/* Within the stride, the first valid cell: where few are valid, none is passed over. */
 		size_t at = i;
@@ -140,18 +139,66 @@ static bp_status colour_fit(const struct lattice *lattice, struct model *model, 
 			continue;
 		for (int c = 0; c < 3; c++)
 			y[c][n] = lattice->rgb[c][at];
-		x[n] = y[0][n] / 3 + y[1][n] / 3 + y[2][n] / 3;
+		out->x[n] = y[0][n] / 3 + y[1][n] / 3 + y[2][n] / 3;
 		n++;
 	}
-	for (int c = 0; !status && c < 3; c++) {
-		struct robust_fit fit;
-		status = robust_fit(x, y[c], n, &fit, error);
-		if (!status)
-			model->colour[c] = (struct colour_fit){.diffuse = fit.intercept, .specular = fit.slope, .iterations = fit.iterations,
-			                                       .converged = fit.converged, .rejected = (double)fit.rejected / (double)n};
+	out->n = n;
+	for (size_t c = 0; c < 3; c++) {
+		out->y[c] = out->x + (c + 1) * n;
+		memmove(out->y[c], y[c], n * sizeof *y[c]);
 	}
-	free(x);
-	return status;
+	return BP_OK;
+}
+
+/*
+ * The paper's regression of each channel on the measured achromatic value. The fields carry colour, so these six numbers are a summary
+ * here: the sample gives them to a fraction of a percent and in a tenth of the time.
+ */
+static bp_status colour_fit(const struct sample *sample, struct model *model, bp_error *error)
+{
+	for (int c = 0; c < 3; c++) {
+		struct robust_fit fit;
+		bp_status status = robust_fit(sample->x, sample->y[c], sample->n, &fit, error);
+		if (status)
+			return status;
+		model->colour[c] = (struct colour_fit){.diffuse = fit.intercept, .specular = fit.slope, .iterations = fit.iterations,
+		                                       .converged = fit.converged, .rejected = (double)fit.rejected / (double)sample->n};
+	}
+	return BP_OK;
+}
+
+/*
+ * Where the logarithm turns linear: a hundredth of the geometric mean of the median and the 85 % point of all channels' values.
+ * The median alone is too low for mirrors and too high for matte white, a higher point the other way round (VARIANTS.md).
+ * What lies below 2^-24 of the largest value counts as that: so the unit is at least 2^-31 of the largest, and where half of a
+ * table is dark it does not hang on how dark. Square roots are exact to the last bit, powers would not be. Rearranges the sample.
+ */
+static double unit_for(struct sample *sample, double largest)
+{
+	double *v = sample->y[0];
+	const size_t last = 3 * sample->n - 1, half = last / 2, high = last / 20 * 17 + last % 20 * 17 / 20;
+	const double least = largest * 0x1p-24;
+
+	if (largest == 0)
+		return 1;
+	const double median = select_kth(v, last + 1, half);
+	const double upper = select_kth(v + half, last + 1 - half, high - half);
+	const double unit = sqrt(fmax(median, least)) * sqrt(fmax(upper, least)) / 100;
+	return fmin(fmax(unit, DEFAULT_UNIT_LEAST), DEFAULT_UNIT_MOST);
+}
+
+/* The channels by the sums of their values: from here on it does not matter which is called red. */
+static void channels_order(const struct sample *sample, int order[3])
+{
+	double sum[3] = {0};
+	for (int c = 0; c < 3; c++) {
+		for (size_t i = 0; i < sample->n; i++)
+			sum[c] += sample->y[c][i];
+		int at = c;
+		for (; at > 0 && sum[order[at - 1]] < sum[c]; at--)
+			order[at] = order[at - 1];
+		order[at] = c;
+	}
 }
 
 static double largest_value(const struct lattice *lattice)
@@ -170,42 +217,51 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 	const size_t cells = lattice_cells(d), rows = (size_t)d.theta_h * d.theta_d;
 	struct default_model *fitted = model->log_density = calloc(1, sizeof *fitted);
 	struct spectrum *spectrum = NULL;
+	struct sample sample = {0};
+	int order[3];         /* coefficient[k] is channel order[k], until it becomes field k */
+	float rotation[3][3]; /* of the channels in that order */
 	bp_status status;
 
 	if (!fitted)
 		return error_memory(error, sizeof *fitted);
 	model->layer_count = 1;
 	stage_enter(STAGE_CLEAN);
-	fitted->unit = unit_for(largest_value(lattice));
 	fitted->coefficient[0] = malloc(3 * cells * sizeof(float));
 	if (!fitted->coefficient[0])
 		return error_memory(error, 3 * cells * sizeof(float));
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
 	stage_enter(STAGE_REGRESSION);
-	status = colour_fit(lattice, model, error);
-	if (status)
-		return status;
-	status = spectrum_create(d, &spectrum, error);
+	status = sample_draw(lattice, &sample, error);
+	if (!status)
+		status = colour_fit(&sample, model, error);
 	stage_enter(STAGE_CLEAN);
-	for (int c = 0; !status && c < 3; c++) {
-		const double factor = 1 / (fitted->unit * (double)DEFAULT_OFFSET);
-		const double sum = kernels->default_logs(lattice->rgb[c], lattice->valid, cells, factor, fitted->coefficient[c]);
-		fitted->base[c] = (float)(sum / (double)lattice->valid_count);
+	if (!status) {
+		channels_order(&sample, order);
+		fitted->unit = unit_for(&sample, largest_value(lattice));
+		status = spectrum_create(d, &spectrum, error);
+	}
+	free(sample.x);
+	for (int k = 0; !status && k < 3; k++) {
+		const double sum = kernels->default_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit, fitted->coefficient[k]);
+		fitted->base[order[k]] = (float)(sum / (double)lattice->valid_count);
 	}
 	if (!status)
 		status = default_fill(d, lattice->valid, fitted->coefficient, error);
 	stage_enter(STAGE_TRANSFORM);
-	for (int c = 0; !status && c < 3; c++)
-		spectrum_forward(spectrum, fitted->coefficient[c], fitted->base[c]);
+	for (int k = 0; !status && k < 3; k++)
+		spectrum_forward(spectrum, fitted->coefficient[k], fitted->base[order[k]]);
 	spectrum_free(spectrum);
 	if (status)
 		return status;
-	rotation_find(fitted->coefficient, rows, d.phi_d, fitted->rotation);
+	rotation_find(fitted->coefficient, rows, d.phi_d, rotation);
 	for (size_t r = 0; r < rows; r++) {
 		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d, fitted->coefficient[2] + r * d.phi_d};
-		kernels->default_rotate(x, d.phi_d, (const float(*)[3])fitted->rotation);
+		kernels->default_rotate(x, d.phi_d, (const float(*)[3])rotation);
 	}
+	for (int f = 0; f < 3; f++)
+		for (int k = 0; k < 3; k++)
+			fitted->rotation[f][order[k]] = rotation[f][k];
 	stage_enter(STAGE_CLEAN);
 	/* An error bound is a promise about the measured values, their noise included. */
 	for (int f = 0; !status && f < 3 && !(options->max_error > 0); f++)

@@ -6,13 +6,12 @@
  * coefficients of the other harmonics are the (theta_h, phi_d) pair, the rest is the conditional pair. Where a pair is
  * independent its coefficients are 0 and take no room.
  *
- *     y_c = log2(1 + b_c / (unit offset))             c = R, G, B; b in 1/sr
+ *     y_c = log2(1 + b_c / unit)                      c = R, G, B; b in 1/sr
  *     x_f = sum over c of rotation[f][c] (y_c - base_c)   three fields, the first with most of the variation
  *     coefficients = spectrum of x_f
  *
- * The offset is where the logarithm turns linear: below it a relative error is not worth its bytes. It is an absolute
- * 2^-9 /sr (the error figures have 0.001) for every material whose largest value is a BRDF's, from 2^-6 to 2^24 /sr; for
- * others the unit moves it along with the largest value.
+ * The unit is where the logarithm turns linear: below it a relative error is not worth its bytes. It is a statistic of
+ * the table's values that scales as they do, so a table s times as bright gives the same fields and s times the unit.
  *
  * A model that was fitted holds coefficients as they were found; one that was decoded holds levels, a coefficient
  * being about level * step. What lies below the quantiser's step is lost in encoding, where the budget is known.
@@ -22,7 +21,9 @@
 
 #include "model.h"
 
-#define DEFAULT_OFFSET 0x1p-9f
+/* Of the unit, in 1/sr: a normal number with a reciprocal, and the hundredth of any value is one. */
+#define DEFAULT_UNIT_LEAST 0x1p-1022
+#define DEFAULT_UNIT_MOST 0x1p999
 enum { DEFAULT_PLANES_MAX = 24 }; /* |level| < 2^24 */
 
 /* A level that is not 0. */
@@ -36,7 +37,7 @@ struct default_level {
  * ends before unit end[l].
  */
 struct default_model {
-	double unit;          /* a power of two, 1/sr */
+	double unit;          /* DEFAULT_UNIT_LEAST to DEFAULT_UNIT_MOST */
 	float base[3];        /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
 	float rotation[3][3]; /* orthonormal */
 	float *coefficient[3]; /* fitted: spectra of the three fields; NULL when decoded */
@@ -51,6 +52,8 @@ struct default_model {
 };
 
 bp_status default_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error);
+/* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
+float default_most(double unit);
 bp_status default_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
 /* Every second corner along each axis (extents even); *out has half the model's extents. Decoded models only. */
 bp_status default_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);

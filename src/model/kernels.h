@@ -150,11 +150,11 @@ struct kernels {
 	/* Adds w x_i x_j with w = 1/(1 + x_0^2 + x_1^2 + x_2^2) to sums, ij = 00, 01, 02, 11, 12, 22. */
 	void (*default_moments)(const float *const x[3], size_t n, double sums[6]);
 	/*
-	 * rgb_c = max(0, offset (2^l - 1)) with l = min(40, base[c] + sum over f of rotation[f][c] field_f), for `rows` rows of `width`
+	 * rgb_c = max(0, 2^l - 1) with l = min(most, base[c] + sum over f of rotation[f][c] field_f), for `rows` rows of `width`
 	 * cells, `stride` apart in the fields (where it is 16, of at most 16 cells) and rgb_stride apart in rgb.
 	 */
 	void (*default_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-	                       const float rotation[3][3], float offset, float *const rgb[3], size_t rgb_stride);
+	                       const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride);
 	/* field_f = sum over c of rotation[f][c] x_c, in place. */
 	void (*default_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
 	/*

@@ -38,8 +38,8 @@ bp_status picture_encode_png(const struct picture *picture, uint8_t **bytes, siz
 
 /*
  * Files. Each is written to a temporary file beside `path`, then renamed: an older file is replaced whole
- * or not at all. PFM: RGB float32 little-endian, bottom row first; the scale field is -unit, -1 in all
- * but tables of extreme magnitude.
+ * or not at all. PFM: RGB float32 little-endian, bottom row first; values are in 1/sr, the scale field -1,
+ * but for images of extreme magnitude: those are in units of their own, which the scale field tells (negative).
  */
 bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp_error *error);
 bp_status picture_write_png(const char *path, const struct picture *picture, bp_error *error);

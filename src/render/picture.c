@@ -111,10 +111,19 @@ bp_status picture_write_png(const char *path, const struct picture *picture, bp_
 
 bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp_error *error)
 {
+	const size_t row = 3 * (size_t)image->size;
+	double largest = 0, factor = 1, scale = image->unit;
 	char head[96];
+	for (size_t n = 0; n < row * image->size; n++)
+		largest = fmax(largest, fabs((double)image->rgb[n]));
+	/* Few programs look at the scale: it is 1 wherever a float can hold the values. */
+	if (largest * image->unit < 1e38 && image->unit > 1e-30) {
+		factor = image->unit;
+		scale = 1;
+	}
 	/* a negative scale means little-endian; its magnitude is the unit */
-	size_t head_bytes = (size_t)snprintf(head, sizeof head, "PF\n%u %u\n%.9g\n", image->size, image->size, -image->unit);
-	size_t row = 3 * (size_t)image->size, bytes = head_bytes + row * image->size * sizeof(float);
+	size_t head_bytes = (size_t)snprintf(head, sizeof head, "PF\n%u %u\n%.9g\n", image->size, image->size, -scale);
+	size_t bytes = head_bytes + row * image->size * sizeof(float);
 	uint8_t *memory = malloc(bytes), *to = memory;
 	if (!memory)
 		return error_memory(error, bytes);
@@ -123,7 +132,8 @@ bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp
 	for (uint32_t y = image->size; y-- > 0;)
 		for (size_t n = 0; n < row; n++, to += 4) {
 			uint32_t bits;
-			memcpy(&bits, &image->rgb[row * y + n], 4);
+			const float value = (float)(factor * (double)image->rgb[row * y + n]);
+			memcpy(&bits, &value, 4);
 			for (int b = 0; b < 4; b++)
 				to[b] = (uint8_t)(bits >> (8 * b));
 		}
