@@ -10,11 +10,11 @@ count = words(methods)
 points = work."/points"
 
 # A method keeps its colour (Okabe and Ito's, which colour-blind readers tell apart) and its mark in every plot.
-known = 'default paper tucker zfp archimedean ward cook-torrance edwards'
-array colour[9] = ['#0072B2', '#009E73', '#D55E00', '#E69F00', '#CC79A7', '#56B4E9', '#7F7F7F', '#000000', '#8B4513']
-array shape[9] = [7, 5, 9, 11, 13, 4, 6, 8, 10]
+known = 'default paper tucker zfp archimedean ward cook-torrance edwards default-effort'
+array colour[10] = ['#0072B2', '#009E73', '#D55E00', '#E69F00', '#CC79A7', '#56B4E9', '#7F7F7F', '#000000', '#00308F', '#8B4513']
+array shape[10] = [7, 5, 9, 11, 13, 4, 6, 8, 2, 10]
 place(name) = sum [n = 1:words(known)] (word(known, n) eq name ? n : 0)
-style(m) = place(word(methods, m)) > 0 ? place(word(methods, m)) : 9
+style(m) = place(word(methods, m)) > 0 ? place(word(methods, m)) : 10
 own(m) = word(methods, m) eq 'paper' || word(methods, m) eq 'default'
 
 set logscale x
@@ -34,8 +34,8 @@ do for [p = 1:3] {
 	set bmargin at screen 0.12
 
 	unset key
-	set lmargin at screen 0.075
-	set rmargin at screen 0.425
+	set lmargin at screen 0.09
+	set rmargin at screen 0.43
 	set logscale y
 	set format y '%g'
 	set ylabel 'log RMSE (lower is better)'
@@ -43,7 +43,7 @@ do for [p = 1:3] {
 		lc rgb colour[style(m)] title word(methods, m)
 
 	set key outside right top Left reverse samplen 2
-	set lmargin at screen 0.505
+	set lmargin at screen 0.515
 	set rmargin at screen 0.84
 	unset logscale y
 	set format y '%g'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # bench_table.sh TABLE.tsv [BUDGET]: the README's table, as Markdown: one row per method at BUDGET bytes (60400) or at the
 # method's own size, the sphere's PSNR under the key lights per material, and medians. Under it the figures that the
-# paper prints for its own method and its rivals.
+# paper prints for its own method and its rivals; then, if the run had any, the medians for each effort.
 set -e
 table=$1 budget=${2:-60400}
 [ -r "$table" ] || { echo "usage: bench_table.sh TABLE.tsv [BUDGET]" >&2; exit 2; }
@@ -13,6 +13,12 @@ awk -F '\t' -v budget="$budget" '
 		size = $(column["budget_bytes"])
 		if (size != "-" && size != budget || $(column["log_rmse"]) == "-") next
 		method = $2
+		if (("effort" in column) && $(column["effort"]) != "-") {
+			if ($1 == "(median)")
+				efforts = efforts sprintf("| %s | %d | %.3g | %.4g | %s / %s |\n", $(column["effort"]), $(column["bytes"]), $(column["fit_s"]), \
+					$(column["log_rmse"]), $(column["psnr_key_db"]), $(column["psnr_env_db"]))
+			next
+		}
 		if ($1 == "(median)") {
 			order[++methods] = method
 			bytes[method] = $(column["bytes"]); fit[method] = $(column["fit_s"]); decode[method] = $(column["decode_s"])
@@ -53,4 +59,5 @@ awk -F '\t' -v budget="$budget" '
 		published("Cook-Torrance", "fruitwood-241 42.83 gold-metallic-paint 31.69 nickel 27.82")
 		published("Edwards et al.", "fruitwood-241 36.91 gold-metallic-paint 32.99 nickel 24.19")
 		published("Bilgili et al. 2011 (Tucker)", "fruitwood-241 42.5 gold-metallic-paint 38.57 nickel 37.88")
+		if (efforts) printf "\n| effort | bytes | fit s | log RMSE | PSNR key / env |\n|--:|--:|--:|--:|--:|\n%s", efforts
 	}' "$table"

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "bench/methods.h"
 #include "bench/row.h"
 #include "bench/timing.h"
 
@@ -39,6 +40,34 @@ static void rows_are_ordered_by_method_budget_and_material(void **unused)
 	assert_true(rows[0].bytes == 2 && rows[1].bytes == 3 && rows[2].bytes == 0 && rows[3].bytes == 1);
 }
 
+static void efforts_are_settings_of_their_own(void **unused)
+{
+	struct row rows[3] = {row_of(0, 1, 60400, 0, 0), row_of(1, 1, 60400, 1, 0), row_of(0, 1, 60400, 2, 0)};
+	(void)unused;
+
+	rows[0].effort = rows[1].effort = 9;
+	rows[2].effort = 1;
+	qsort(rows, 3, sizeof *rows, row_compare);
+	assert_true(rows[0].bytes == 2 && rows[1].bytes == 0 && rows[2].bytes == 1);
+	assert_false(row_same_setting(&rows[0], &rows[1]));
+	assert_true(row_same_setting(&rows[1], &rows[2]));
+}
+
+static void methods_are_chosen_by_their_whole_names(void **unused)
+{
+	bool on[METHOD_COUNT];
+	char unknown[16];
+	(void)unused;
+
+	assert_true(methods_choose("default,cat", on, unknown, sizeof unknown));
+	for (int m = 0; m < METHOD_COUNT; m++)
+		assert_int_equal(on[m], !strcmp(METHODS[m].name, "default") || !strcmp(METHODS[m].name, "cat"));
+	assert_false(methods_choose("ward,defaul", on, unknown, sizeof unknown));
+	assert_string_equal(unknown, "defaul");
+	for (int m = 0; m < METHOD_COUNT; m++)
+		assert_int_equal(METHODS[m].baseline == NULL, m >= METHOD_FITS);
+}
+
 static void a_line_has_a_field_for_every_column(void **unused)
 {
 	struct row row = row_of(0, 0, 0, 60400, NAN);
@@ -59,7 +88,7 @@ static void a_line_has_a_field_for_every_column(void **unused)
 		tabs[c > header] += *c == '\t';
 	assert_int_equal(tabs[0], tabs[1]);
 	/* no budget, no parameters, no evaluation time */
-	assert_non_null(strstr(text, "name\tward\t-\t60400\t-\t0\t0\t-\t"));
+	assert_non_null(strstr(text, "name\tward\t-\t-\t60400\t-\t0\t0\t-\t"));
 	free(text);
 }
 
@@ -88,6 +117,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_median_is_taken_per_column_and_leaves_out_what_is_absent),
 		cmocka_unit_test(rows_are_ordered_by_method_budget_and_material),
+		cmocka_unit_test(efforts_are_settings_of_their_own),
+		cmocka_unit_test(methods_are_chosen_by_their_whole_names),
 		cmocka_unit_test(a_line_has_a_field_for_every_column),
 		cmocka_unit_test(the_directions_are_unit_vectors_above_the_horizon),
 	};

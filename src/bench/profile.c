@@ -41,10 +41,12 @@ static bp_status fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count
 	return BP_OK;
 }
 
-static bp_status fit_profile(enum profile profile, const struct bench_material *material, size_t budget_bytes, void **out,
-                             bp_error *error)
+enum { EFFORT_USUAL = 5 };
+
+static bp_status fit_profile(enum profile profile, const struct bench_material *material, size_t budget_bytes, int effort,
+                             void **out, bp_error *error)
 {
-	const struct fit_options options = {.profile = profile, .budget_bytes = (uint32_t)budget_bytes, .effort = 5};
+	const struct fit_options options = {.profile = profile, .budget_bytes = (uint32_t)budget_bytes, .effort = effort};
 	const struct record_source source = {.bytes = material->raw_bytes};
 	struct profile_state *state = calloc(1, sizeof *state);
 	bp_status status;
@@ -61,12 +63,17 @@ static bp_status fit_profile(enum profile profile, const struct bench_material *
 
 static bp_status paper_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
 {
-	return fit_profile(PROFILE_PAPER, material, budget_bytes, state, error);
+	return fit_profile(PROFILE_PAPER, material, budget_bytes, EFFORT_USUAL, state, error);
 }
 
 static bp_status default_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
 {
-	return fit_profile(PROFILE_DEFAULT, material, budget_bytes, state, error);
+	return fit_profile(PROFILE_DEFAULT, material, budget_bytes, EFFORT_USUAL, state, error);
+}
+
+static bp_status default_fit_effort(const struct bench_material *material, size_t budget_bytes, int effort, void **state, bp_error *error)
+{
+	return fit_profile(PROFILE_DEFAULT, material, budget_bytes, effort, state, error);
 }
 
 static size_t profile_bytes(const void *state)
@@ -131,6 +138,7 @@ const struct baseline BASELINE_DEFAULT = {
 	.reference = "this project, the default profile",
 	.budgeted = true,
 	.fit = default_fit,
+	.fit_effort = default_fit_effort,
 	.bytes = profile_bytes,
 	.parameters = profile_parameters,
 	.expand = profile_expand,

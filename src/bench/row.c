@@ -12,6 +12,7 @@ struct column {
 #define AT(field) offsetof(struct row, field)
 static const struct column COLUMNS[] = {
 	{"budget_bytes", "%.0f", AT(budget)},
+	{"effort", "%.0f", AT(effort)},
 	{"bytes", "%.0f", AT(bytes)},
 	{"parameters", "%.0f", AT(parameters)},
 	{"fit_s", "%.4g", AT(fit_seconds)},
@@ -27,6 +28,11 @@ static const struct column COLUMNS[] = {
 	{"cube_root_rmse", "%.5g", AT(figures.fidelity.cube_root_rmse)},
 	{"largest_relative", "%.4g", AT(figures.fidelity.largest_relative)},
 };
+/* What 0 means that there is none of. */
+static bool zero_is_absent(size_t offset)
+{
+	return offset == AT(budget) || offset == AT(effort) || offset == AT(parameters);
+}
 enum { COLUMN_COUNT = sizeof COLUMNS / sizeof *COLUMNS };
 
 static double *cell(struct row *row, int column)
@@ -50,7 +56,7 @@ void row_print(FILE *out, const char *material, const char *method, const struct
 	fprintf(out, "%s\t%s", material, method);
 	for (int n = 0; n < COLUMN_COUNT; n++) {
 		double value = *cell(&copy, n);
-		bool absent = !isfinite(value) || (value == 0 && (COLUMNS[n].offset == AT(budget) || COLUMNS[n].offset == AT(parameters)));
+		bool absent = !isfinite(value) || (value == 0 && zero_is_absent(COLUMNS[n].offset));
 		fputc('\t', out);
 		if (absent)
 			fputc('-', out);
@@ -68,7 +74,17 @@ int row_compare(const void *a, const void *b)
 		return x->method < y->method ? -1 : 1;
 	if (x->budget < y->budget || x->budget > y->budget)
 		return x->budget < y->budget ? -1 : 1;
+	if (x->effort < y->effort || x->effort > y->effort)
+		return x->effort < y->effort ? -1 : 1;
 	return (x->material > y->material) - (x->material < y->material);
+}
+
+bool row_same_setting(const struct row *a, const struct row *b)
+{
+	struct row other = *b;
+
+	other.material = a->material;
+	return row_compare(a, &other) == 0;
 }
 
 static int ascending(const void *a, const void *b)
