@@ -64,19 +64,19 @@ static double turn(const struct archimedean_channel *channel, int axis, double f
 	return channel->turned >> axis & 1 ? 1 - f : f;
 }
 
-void archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct copula_edge (*out)[2])
+double archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct copula_edge *room,
+                         const struct copula_edge *out[3])
 {
+	double sign = 1;
+
 	for (int axis = 0; axis < 3; axis++) {
-		const uint32_t extent = archimedean_extent(dims, axis), turned = channel->turned >> axis & 1;
-		for (uint32_t n = 0; n <= extent; n++) {
-			const struct copula_edge edge = copula_edge(channel->family, alpha, turn(channel, axis, channel->edge[axis][n]));
-			if (n > 0)
-				out[n - 1][!turned] = edge;
-			if (n < extent)
-				out[n][turned] = edge;
-		}
-		out += extent;
+		const uint32_t extent = archimedean_extent(dims, axis);
+		out[axis] = room;
+		for (uint32_t n = 0; n <= extent; n++)
+			*room++ = copula_edge(channel->family, alpha, turn(channel, axis, channel->edge[axis][n]));
+		sign = channel->turned >> axis & 1 ? -sign : sign;
 	}
+	return sign;
 }
 
 static size_t archimedean_parameters(const void *opaque)
@@ -96,30 +96,58 @@ static double finite_or_zero(double x)
 	return isfinite(x) ? x : 0;
 }
 
+/* C at all corners of one edge of theta_h: D + 1 rows of P + 1. */
+static void corners_fill(struct lattice_dims dims, const struct copula *copula, const struct copula_edge *const edges[3], uint32_t i,
+                         double *out)
+{
+	for (uint32_t j = 0; j <= dims.theta_d; j++)
+		for (uint32_t k = 0; k <= dims.phi_d; k++)
+			*out++ = copula_value(copula, edges[0][i], edges[1][j], edges[2][k]);
+}
+
+/* Cells share corners, so the eight of each are looked up in the two layers around it: low and high. */
+static void channel_expand(struct lattice_dims dims, const struct archimedean_channel *channel, struct copula_edge *room, double *low,
+                           double *high, float *out)
+{
+	const struct copula copula = copula_make(channel->family, (double)channel->alpha);
+	const struct copula_edge *edges[3];
+	const double sign = archimedean_edges(dims, channel, (double)channel->alpha, room, edges);
+	const double scale = sign * (double)channel->scale * (double)lattice_cells(dims);
+	const size_t row = (size_t)dims.phi_d + 1;
+
+	corners_fill(dims, &copula, edges, 0, low);
+	for (uint32_t i = 0; i < dims.theta_h; i++) {
+		corners_fill(dims, &copula, edges, i + 1, high);
+		for (uint32_t j = 0; j < dims.theta_d; j++) {
+			const double *a = low + j * row, *b = high + j * row;
+			for (uint32_t k = 0; k < dims.phi_d; k++) {
+				const double near = (b[k] - a[k]) - (b[k + row] - a[k + row]);
+				const double far = (b[k + 1] - a[k + 1]) - (b[k + 1 + row] - a[k + 1 + row]);
+				*out++ = channel->diffuse + (float)finite_or_zero(fmax(0, scale * (near - far)));
+			}
+		}
+		double *swap = low;
+		low = high;
+		high = swap;
+	}
+}
+
 static bp_status archimedean_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
 	const struct archimedean_state *state = opaque;
-	const struct lattice_dims dims = state->dims;
-	struct copula_edge (*edges)[2] = malloc(3 * LATTICE_EXTENT_MAX * sizeof *edges);
-	const struct copula_edge (*edge_d)[2] = edges + dims.theta_h, (*edge_p)[2] = edge_d + dims.theta_d;
+	const size_t layer = ((size_t)state->dims.theta_d + 1) * (state->dims.phi_d + 1);
+	struct copula_edge *room = malloc(ARCHIMEDEAN_EDGES_MAX * sizeof *room);
+	double *corners = malloc(2 * layer * sizeof *corners);
+	bp_status status = BP_OK;
 
-	if (!edges)
-		return error_memory(error, 3 * LATTICE_EXTENT_MAX * sizeof *edges);
+	if (!room || !corners)
+		status = error_memory(error, ARCHIMEDEAN_EDGES_MAX * sizeof *room + 2 * layer * sizeof *corners);
 	out->unit = 1;
-	for (int c = 0; c < 3; c++) {
-		const struct archimedean_channel *channel = &state->channel[c];
-		const struct copula copula = copula_make(channel->family, (double)channel->alpha);
-		const double scale = (double)channel->scale * (double)lattice_cells(dims);
-		archimedean_edges(dims, channel, (double)channel->alpha, edges);
-		for (uint32_t i = 0; i < dims.theta_h; i++)
-			for (uint32_t j = 0; j < dims.theta_d; j++)
-				for (uint32_t k = 0; k < dims.phi_d; k++) {
-					double f = scale > 0 ? scale * copula_cell_mass(&copula, edges[i], edge_d[j], edge_p[k]) : 0;
-					out->rgb[c][lattice_index(dims, i, j, k)] = channel->diffuse + (float)finite_or_zero(f);
-				}
-	}
-	free(edges);
-	return BP_OK;
+	for (int c = 0; !status && c < 3; c++)
+		channel_expand(state->dims, &state->channel[c], room, corners, corners + layer, out->rgb[c]);
+	free(room);
+	free(corners);
+	return status;
 }
 
 /* Marginals and the middles of their cells are interpolated linearly, phi_d up to its last corner. */

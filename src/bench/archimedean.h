@@ -50,8 +50,13 @@ bp_status archimedean_alloc(struct lattice_dims dims, struct archimedean_state *
 void archimedean_accumulate(struct lattice_dims dims, struct archimedean_channel *channel);
 void archimedean_free(void *state); /* NULL is allowed */
 
-/* Both edges of every cell along each axis, turned where the axis is, the lower one first: H, D, P pairs one after the other. */
-void archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct copula_edge (*out)[2]);
+/*
+ * The edges of the cells along each axis, turned where the axis is: H + 1, D + 1, P + 1, out[axis] pointing into `room` of
+ * ARCHIMEDEAN_EDGES_MAX. Returns the sign that a cell's mass between them has: -1 where an odd number of axes is turned.
+ */
+enum { ARCHIMEDEAN_EDGES_MAX = 3 * (LATTICE_EXTENT_MAX + 1) };
+double archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct copula_edge *room,
+                         const struct copula_edge *out[3]);
 
 /* The baseline's fit (archimedean_fit.c). */
 bp_status archimedean_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error);

@@ -42,6 +42,13 @@ static double frank_rest(const struct copula *copula, struct copula_edge u, stru
 	return (u.b + v.b + w.b + copula->below - (u.b * v.b + v.b * w.b + w.b * u.b) + u.b * v.b * w.b) / copula->p2;
 }
 
+double copula_value(const struct copula *copula, struct copula_edge u, struct copula_edge v, struct copula_edge w)
+{
+	if (copula->family == ARCHIMEDEAN_FRANK)
+		return -log(frank_rest(copula, u, v, w)) / copula->alpha;
+	return pow(u.a + v.a + w.a - 2, copula->power);
+}
+
 double copula_cell_mass(const struct copula *copula, const struct copula_edge u[2], const struct copula_edge v[2],
                         const struct copula_edge w[2])
 {
@@ -56,9 +63,9 @@ double copula_cell_mass(const struct copula *copula, const struct copula_edge u[
 	} else {
 		for (int corner = 0; corner < 8; corner++) {
 			const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
-			const double value = pow(u[a].a + v[b].a + w[c].a - 2, copula->power);
+			const double value = copula_value(copula, u[a], v[b], w[c]);
 			sum += (a + b + c) & 1 ? value : -value;
 		}
 	}
-	return sum > 0 ? sum : 0;
+	return sum;
 }

@@ -30,9 +30,13 @@ struct copula {
 };
 struct copula copula_make(enum archimedean_family family, double alpha);
 
+/* C itself. */
+double copula_value(const struct copula *copula, struct copula_edge u, struct copula_edge v, struct copula_edge w);
+
 /*
- * The integral of c over a cell: the eight-corner difference of C, u[0] < u[1] and so on. Its error is a few 1e-15, absolute, so
- * it is an exact mass where the density is singular, and may be a rounding error where there is next to none: >= 0 always.
+ * The integral of c over a cell, from the edges of it along each axis: the eight-corner difference of C. Its error is a few
+ * 1e-15, absolute, so it is right also where the density is singular, and where there is next to none it may be below 0 by that
+ * much. An axis whose edges descend turns its sign.
  */
 double copula_cell_mass(const struct copula *copula, const struct copula_edge u[2], const struct copula_edge v[2],
                         const struct copula_edge w[2]);

@@ -69,7 +69,7 @@ struct search {
 	struct archimedean_channel *channel;            /* family, turns, marginals */
 	size_t every;                                   /* of the sample's cells */
 	double diffuse, scale;                          /* of the last evaluation, in the sample's unit */
-	struct copula_edge edges[3 * LATTICE_EXTENT_MAX][2]; /* scratch */
+	struct copula_edge edges[ARCHIMEDEAN_EDGES_MAX]; /* scratch */
 };
 
 /* The cosine-weighted squared error with the best diffuse and K, both >= 0. */
@@ -79,15 +79,15 @@ static double objective(double log_alpha, void *user)
 	const struct lobe_sample *s = search->sample;
 	const struct archimedean_channel *channel = search->channel;
 	const uint32_t D = search->dims.theta_d, P = search->dims.phi_d;
-	const struct copula_edge (*edge_d)[2] = search->edges + search->dims.theta_h, (*edge_p)[2] = edge_d + D;
-	const double alpha = exp(log_alpha), cells = (double)lattice_cells(search->dims);
+	const struct copula_edge *edges[3];
+	const double alpha = exp(log_alpha);
 	const struct copula copula = copula_make(channel->family, alpha);
 	double one = 0, y1 = 0, yy = 0, yg = 0, g1 = 0, gg = 0;
 
-	archimedean_edges(search->dims, channel, alpha, search->edges);
+	const double cells = archimedean_edges(search->dims, channel, alpha, search->edges, edges) * (double)lattice_cells(search->dims);
 	for (size_t n = 0; n < s->count; n += search->every) {
 		uint32_t k = s->cell[n] % P, j = s->cell[n] / P % D, i = s->cell[n] / P / D;
-		double g = cells * copula_cell_mass(&copula, search->edges[i], edge_d[j], edge_p[k]);
+		double g = fmax(0, cells * copula_cell_mass(&copula, edges[0] + i, edges[1] + j, edges[2] + k));
 		double y = search->rgb[n], w = s->weight[n];
 		one += w;
 		y1 += w * y;
