@@ -57,6 +57,10 @@ static inline uint32_t planes_units(const struct planes *planes)
 {
 	return planes->planes * 3 * planes->dims.phi_d;
 }
+static inline uint32_t planes_unit_plane(const struct planes *planes, uint32_t unit)
+{
+	return planes->planes - 1 - unit / (3 * planes->dims.phi_d);
+}
 void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
 void planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
 

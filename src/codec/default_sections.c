@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "../error.h"
-#include "../model/fast_math.h"
 #include "default_planes.h"
+#include "default_rate.h"
 #include "profile_codec.h"
 
 enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, FIELDS_VERSION = 2, PLANES_VERSION = 2 };
@@ -26,10 +26,26 @@ static const struct section_kind KINDS[] = {
 static const uint32_t PREVIEWS[] = { 4096, 16384, 65536, 262144, 1048576 };
 enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
+enum { FORESEEABLE = 2000 }; /* bytes of the higher planes below which too little is known to foresee the rest */
 static const float ROUNDING = 0.3f;      /* a level is rounded down up to 0.7: what is rare costs more than it is worth */
 static const float CENTRE_BELOW = 0.4f;  /* where a level lies whose lower planes are missing, as a share of them */
 
 /* ---- encoding ---- */
+
+/* How near the bytes of all units must come to the budget, as ratios, and what is aimed at; how often a step may be tried. */
+struct search {
+	double low, high, aim;
+	int attempts;
+};
+
+static struct search search_for(int effort)
+{
+	static const struct search searches[9] = {
+		{0.991, 1.25, 1.10, 2}, {0.991, 1.15, 1.06, 3}, {0.991, 1.10, 1.04, 3}, {0.991, 1.06, 1.02, 4}, {0.991, 1.04, 1.013, 5},
+		{0.991, 1.03, 1.01, 5}, {0.994, 1.02, 1.007, 6}, {0.996, 1.012, 1.004, 8}, {0.998, 1.008, 1.003, 10},
+	};
+	return searches[effort < 1 ? 0 : effort > 9 ? 8 : effort - 1];
+}
 
 struct encoding {
 	const struct default_model *model;
@@ -40,7 +56,10 @@ struct encoding {
 	uint32_t limit[LAYERS_MAX];  /* record bytes at the end of every layer; the last is the budget */
 	struct byte_buffer stream[LAYERS_MAX];
 	uint32_t end[LAYERS_MAX];
-	uint64_t wanted; /* record bytes that all units would have taken */
+	struct rate rate;
+	double wanted;   /* record bytes but for the head that all units would have taken */
+	double foreseen; /* the same as foreseen before the lowest plane; 0 where it was not */
+	double bias;     /* what was wanted for each byte foreseen in the last attempt that was complete; 1 before */
 };
 
 static void encoding_clear(struct encoding *e)
@@ -49,17 +68,24 @@ static void encoding_clear(struct encoding *e)
 		byte_buffer_free(&e->stream[l]);
 }
 
-/* Everything with e->step, as far as the limits allow. */
-static bp_status encode_once(struct encoding *e, bp_error *error)
+/*
+ * Everything with e->step, as far as the limits allow. Where `search` is given and planes 1 and up show that the bytes will not be
+ * what it asks for, the lowest plane, half of the work, is not begun: *complete becomes 0.
+ */
+static bp_status encode_once(struct encoding *e, const struct search *search, int *complete, bp_error *error)
 {
 	struct range_encoder encoder, kept;
 	struct mixed_coder coder = { .encoder = &encoder, .tables = mixer_tables_get() };
+	const double room = (double)e->limit[e->layers - 1] - (double)e->head_bytes;
 	uint64_t bytes = e->head_bytes, largest_unit = 0;
+	double taken[RATE_PLANES] = { 0 };
 	uint32_t unit = 0, units;
 
 	encoding_clear(e);
 	planes_start(e->planes, planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING, e->centre));
 	units = planes_units(e->planes);
+	e->foreseen = 0;
+	*complete = 1;
 	for (uint32_t l = 0; l < e->layers; l++) {
 		struct byte_buffer *out = &e->stream[l];
 		const int last = l + 1 == e->layers;
@@ -73,6 +99,7 @@ static bp_status encode_once(struct encoding *e, bp_error *error)
 		now = bytes + range_encoder_bytes(&encoder, 0);
 		while (unit < units && !out->failed) {
 			const uint64_t before = now;
+			const uint32_t plane = planes_unit_plane(e->planes, unit);
 			if (!last && now + 2 * largest_unit + 16 > e->limit[l])
 				break;
 			if (last && now > 3 * (uint64_t)e->limit[l])
@@ -85,8 +112,18 @@ static bp_status encode_once(struct encoding *e, bp_error *error)
 				kept_count = out->count;
 				e->end[l] = unit;
 			}
+			if (plane > 0 && plane < RATE_PLANES)
+				taken[plane] = (double)(now - e->head_bytes);
+			if (plane == 1 && unit < units && planes_unit_plane(e->planes, unit) == 0 && search && taken[2] > FORESEEABLE) {
+				e->foreseen = rate_foresee(&e->rate, (double)e->step, (double)ROUNDING, taken);
+				e->wanted = e->foreseen * e->bias;
+				if (e->wanted < search->low * room || e->wanted > search->high * room) {
+					*complete = 0;
+					return BP_OK;
+				}
+			}
 		}
-		e->wanted = now;
+		e->wanted = (double)(now - e->head_bytes);
 		out->count = kept_count;
 		encoder = kept;
 		range_encoder_end(&encoder);
@@ -98,83 +135,39 @@ static bp_status encode_once(struct encoding *e, bp_error *error)
 	return BP_OK;
 }
 
-/*
- * A first guess at the step, from how many coefficients have which size: a level costs about 3.4 bits to place, with its
- * sign, and one more for every bit below its highest; 4 where noise has scattered them. A third of the rows is looked at.
- */
-static float step_guess(const struct default_model *model, struct lattice_dims d, double bytes, float least)
-{
-	enum { PER_OCTAVE = 8, BINS = 256 * PER_OCTAVE };
-	uint32_t *bins = calloc(BINS, sizeof *bins);
-	const size_t rows = (size_t)d.theta_h * d.theta_d;
-	double count = 0, finer = 0, bits = 0;
-	int bin = BINS - 1;
-
-	if (!bins)
-		return least;
-	for (int f = 0; f < 3; f++)
-		for (size_t r = 1; r < rows; r += 3)
-			for (size_t k = r * d.phi_d; k < (r + 1) * d.phi_d; k++) {
-				uint32_t u;
-				memcpy(&u, &model->coefficient[f][k], sizeof u);
-				bins[(u & 0x7fffffff) >> 20]++;
-			}
-	/* One bin finer: what is in costs an eighth of a bit more, what comes in pays its place. */
-	while (bin > 0 && bits < bytes * 8) {
-		finer += count / PER_OCTAVE;
-		count += bins[bin--] * 3.0;
-		bits = count * (model->noisy ? 4.0 : 3.4) + finer;
-	}
-	free(bins);
-	const uint32_t edge = (uint32_t)(bin + 1) << 20;
-	float step;
-	memcpy(&step, &edge, sizeof step);
-	step /= 1 - ROUNDING;
-	return step > least ? step : least;
-}
-
 /* The step that a budget needs; leaves the encoding with it. */
 static bp_status step_search(struct encoding *e, struct lattice_dims d, int effort, bp_error *error)
 {
-	const uint32_t limit = e->limit[e->layers - 1];
-	const double high = effort <= 2 ? 1.25 : effort <= 4 ? 1.1 : effort <= 6 ? 1.04 : 1.012, aim = effort <= 2 ? 1.1 : effort <= 4 ? 1.03 : 1.004;
-	const int attempts = effort <= 2 ? 3 : effort <= 6 ? 5 : 8;
-	const size_t cells = lattice_cells(d);
-	float largest = 0, least, fitting = 0;
-	double slope = 0.78, /* what surrogates need: 0.66 to 0.92 */ last_ratio = 0, last_step = 0;
-	bp_status status = BP_OK;
+	const struct search search = search_for(effort);
+	const double room = (double)e->limit[e->layers - 1] - (double)e->head_bytes, rounding = (double)ROUNDING;
+	double per_bit = e->model->noisy ? 1.3 : 1.03; /* bits by the coder for each that rate_bits tells */
+	float fitting = 0;
+	int complete;
+	bp_status status;
 
-	for (int f = 0; f < 3; f++)
-		for (size_t i = 0; i < cells; i++) {
-			const float size = fabsf(e->model->coefficient[f][i]);
-			largest = size > largest ? size : largest;
-		}
-	least = fmaxf(largest * 0x1p-23f, 0x1p-22f); /* finer than the rounding of float in the fields */
-	e->step = step_guess(e->model, d, (double)limit - (double)e->head_bytes, least);
-	for (int attempt = 0; attempt < attempts; attempt++) {
-		status = encode_once(e, error);
+	rate_measure(e->model, d, &e->rate);
+	const float least = fmaxf(e->rate.largest * 0x1p-23f, 0x1p-22f); /* finer than the rounding of float in the fields */
+	for (int attempt = 0; attempt < search.attempts; attempt++) {
+		e->step = (float)rate_step(&e->rate, search.aim * room * 8 / per_bit, rounding, (double)least);
+		status = encode_once(e, attempt + 1 < search.attempts ? &search : NULL, &complete, error);
 		if (status)
 			return status;
-		const double ratio = (double)e->wanted / limit, step = (double)e->step;
-		if ((ratio >= 0.991 && ratio <= high) || (ratio < 1 && e->step <= least))
+		const double ratio = e->wanted / room;
+		if (complete && ((ratio >= search.low && ratio <= search.high) || (ratio < 1 && e->step <= least)))
 			return BP_OK;
-		if (last_ratio > 0 && fabs(fast_log2(step / last_step)) > 1e-4) {
-			slope = -fast_log2(ratio / last_ratio) / fast_log2(step / last_step);
-			slope = slope < 0.15 ? 0.15 : slope > 2 ? 2 : slope;
-		}
-		last_ratio = ratio;
-		last_step = step;
-		if (ratio >= 0.991 && (fitting == 0 || e->step > fitting))
+		if (complete && e->foreseen > 0)
+			e->bias = e->wanted / e->foreseen;
+		if (complete && ratio >= search.low && (fitting == 0 || e->step > fitting))
 			fitting = e->step; /* the coarsest step that fills the record */
-		if (attempt + 1 < attempts)
-			e->step = fmaxf((float)(step * fast_exp2(fmin(fmax(fast_log2(ratio / aim) / slope, -4), 4))), least);
+		const double told = rate_bits(&e->rate, (double)e->step, rounding, 0);
+		per_bit = fmin(fmax(told > 0 ? e->wanted * 8 / told : per_bit, 0.1), 10);
 	}
 	/* Not met: a record that is cut off early is better than one that is not full. */
 	if (fitting > 0 && e->step != fitting) {
 		e->step = fitting;
-		status = encode_once(e, error);
+		return encode_once(e, NULL, &complete, error);
 	}
-	return status;
+	return BP_OK;
 }
 
 static void fields_write(const struct encoding *e, struct section_list *sections)
@@ -223,7 +216,7 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 static bp_status default_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
                                 uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
-	struct encoding e = { .model = model->log_density };
+	struct encoding e = { .model = model->log_density, .bias = 1 };
 	const uint32_t budget = request->record_bytes_max;
 	uint64_t least;
 	bp_status status;
