@@ -268,8 +268,8 @@ float bp_material_pdf(const bp_material *material, const float wi[3], const floa
 
 /*
  * The directional albedo: the integral of f cos theta_i over wi, for theta_o in radians in [0, pi/2]. Other angles, NaN, and
- * a material that was loaded without sampling give 0. Measurements can exceed 1. Takes some milliseconds (a
- * quadrature of 65,536 values): tabulate it where it is needed often.
+ * a material that was loaded without sampling give 0. Measurements can exceed 1. Some milliseconds (a quadrature)
+ * when an angle is asked for first, some ten nanoseconds when it or those around it were; the value is the same.
  */
 void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3]);
 

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 #include <gsl/gsl_cdf.h>
 
+#include "model/albedo.h"
 #include "model/sample.h"
 
 static uint64_t state = 13;
@@ -291,7 +292,7 @@ static void the_mean_weight_is_the_albedo_and_its_spread_is_small(void **user)
 			outgoing(DEGREES[n], wo);
 			weights(&m, wo, 20000, 0, &mean, &deviation);
 			weights(&m, wo, 4000, 1, &unused, &cosine);
-			sampler_albedo(m.table, (float)(DEGREES[n] * M_PI / 180), rgb);
+			albedo_integrate(m.table, (float)(DEGREES[n] * M_PI / 180), rgb);
 			double albedo = quadrature(&m, DEGREES[n]), given = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3;
 			if (fabs(given - albedo) > 0.005 * albedo)
 				fail_msg("kind %d at %g degrees: albedo %g by quadrature, %g given", kind, DEGREES[n], albedo, given);
@@ -307,6 +308,43 @@ static void the_mean_weight_is_the_albedo_and_its_spread_is_small(void **user)
 		release(&m);
 	}
 	assert_true(spread < 0.5 * spread_cosine);
+}
+
+/* Angles between the kept ones, in an order of no meaning; the value does not depend on what was asked before. */
+static void the_kept_albedo_is_the_integrated_one(void **user)
+{
+	(void)user;
+	for (int kind = 0; kind < KINDS; kind++) {
+		struct material m = make((enum kind)kind, SMALL);
+		struct albedo_cache *cache = NULL, *other = NULL;
+		assert_int_equal(albedo_cache_make(&cache, NULL), BP_OK);
+		assert_int_equal(albedo_cache_make(&other, NULL), BP_OK);
+		for (int n = 0; n < 30; n++) {
+			float theta = (float)(M_PI_2 * (n % 2 ? fmod(n * 0.381966, 1) : 1 - pow(10, -4 * fmod(n * 0.381966, 1)))), want[3], got[3], again[3];
+			theta = theta < 1.5707f ? theta : 1.5707f;
+			albedo_integrate(m.table, theta, want);
+			albedo_cached(cache, m.table, theta, got);
+			for (int c = 0; c < 3; c++)
+				if (fabsf(got[c] - want[c]) > 1e-3f * want[c])
+					fail_msg("kind %d at %g radians: albedo %g integrated, %g kept", kind, (double)theta, (double)want[c], (double)got[c]);
+			albedo_cached(cache, m.table, theta, again);
+			assert_memory_equal(got, again, sizeof got);
+			if (kind != GLOSSY)
+				continue;
+			albedo_cached(other, m.table, theta + 0.1f, again);
+			albedo_cached(other, m.table, theta, again);
+			assert_memory_equal(got, again, sizeof got);
+		}
+		const float bad[] = {-0.1f, 1.6f, NAN, INFINITY};
+		for (int n = 0; n < 4; n++) {
+			float rgb[3] = {7, 7, 7};
+			albedo_cached(cache, m.table, bad[n], rgb);
+			assert_true(rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0);
+		}
+		albedo_cache_free(cache);
+		albedo_cache_free(other);
+		release(&m);
+	}
 }
 
 static void numbers_at_the_ends_and_beyond_give_usable_samples(void **user)
@@ -349,7 +387,7 @@ static void unusable_directions_give_no_sample_and_no_density(void **user)
 	const float angles[] = {-0.1f, 1.6f, NAN, INFINITY};
 	for (int n = 0; n < 4; n++) {
 		float rgb[3] = {7, 7, 7};
-		sampler_albedo(m.table, angles[n], rgb);
+		albedo_integrate(m.table, angles[n], rgb);
 		assert_true(rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0);
 	}
 	/* other lengths count as normalised */
@@ -378,6 +416,7 @@ static void a_black_material_still_gives_samples(void **user)
 
 struct job {
 	const struct material *material;
+	struct albedo_cache *cache;
 	double sum;
 };
 
@@ -396,6 +435,11 @@ static void *work(void *user)
 		table_evaluate(job->material->table, wi, wo, rgb);
 		job->sum += (double)rgb[1];
 	}
+	for (int n = 0; n < 10; n++) { /* all ask for the same angles first */
+		float rgb[3];
+		albedo_cached(job->cache, job->material->table, 0.15f * (float)n, rgb);
+		job->sum += (double)rgb[1];
+	}
 	return NULL;
 }
 
@@ -404,16 +448,19 @@ static void many_threads_use_one_material_and_get_the_same(void **user)
 	(void)user;
 	enum { THREADS = 6 };
 	struct material m = make(GLOSSY, SMALL);
+	struct albedo_cache *cache = NULL;
 	struct job jobs[THREADS];
+	assert_int_equal(albedo_cache_make(&cache, NULL), BP_OK);
 	pthread_t threads[THREADS];
 	for (int n = 0; n < THREADS; n++) {
-		jobs[n] = (struct job){&m, 0};
+		jobs[n] = (struct job){&m, cache, 0};
 		assert_int_equal(pthread_create(&threads[n], NULL, work, &jobs[n]), 0);
 	}
 	for (int n = 0; n < THREADS; n++)
 		pthread_join(threads[n], NULL);
 	for (int n = 1; n < THREADS; n++)
 		assert_true(jobs[n].sum == jobs[0].sum);
+	albedo_cache_free(cache);
 	release(&m);
 }
 
@@ -424,6 +471,7 @@ int main(void)
 		cmocka_unit_test(samples_follow_the_density_by_chi_square),
 		cmocka_unit_test(a_wrong_density_fails_the_chi_square_test),
 		cmocka_unit_test(the_mean_weight_is_the_albedo_and_its_spread_is_small),
+		cmocka_unit_test(the_kept_albedo_is_the_integrated_one),
 		cmocka_unit_test(numbers_at_the_ends_and_beyond_give_usable_samples),
 		cmocka_unit_test(unusable_directions_give_no_sample_and_no_density),
 		cmocka_unit_test(a_black_material_still_gives_samples),

@@ -3,13 +3,15 @@
 #include <stdlib.h>
 
 #include "../error.h"
+#include "../model/albedo.h"
 #include "../model/evaluate.h"
 #include "../model/sample.h"
 #include "reader.h"
 
 struct bp_material {
 	struct table *table;
-	struct sampler *sampler; /* NULL: loaded without */
+	struct sampler *sampler;     /* NULL: loaded without */
+	struct albedo_cache *albedo; /* the same */
 	bp_loaded loaded;
 };
 
@@ -72,6 +74,8 @@ static bp_status material_build(const struct model *model, const bp_load_options
 	expansion_free(&expansion);
 	if (!status && options->sampling)
 		status = sampler_build(material->table, &material->sampler, error);
+	if (!status && options->sampling)
+		status = albedo_cache_make(&material->albedo, error);
 	material->loaded.form = options->form == BP_FORM_PREVIEW && !preview ? BP_FORM_EXPANDED : options->form;
 	return status;
 }
@@ -115,7 +119,7 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 		.layers = layers,
 		.log_rmse = head.layers[layers - 1].fidelity.log_rmse,
 		.read_bytes = bytes_to_read(&head, layers),
-		.memory_bytes = sizeof *material + table_bytes(material->table) + (material->sampler ? sampler_bytes(material->sampler) : 0),
+		.memory_bytes = sizeof *material + table_bytes(material->table) + (material->sampler ? sampler_bytes(material->sampler) + albedo_cache_bytes() : 0),
 		.form = material->loaded.form,
 		.colour = options->colour,
 		.sampling = options->sampling,
@@ -130,6 +134,7 @@ void bp_material_free(bp_material *material)
 		return;
 	table_free(material->table);
 	sampler_free(material->sampler);
+	albedo_cache_free(material->albedo);
 	free(material);
 }
 
@@ -172,8 +177,8 @@ float bp_material_pdf(const bp_material *material, const float wi[3], const floa
 
 void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3])
 {
-	if (material->sampler)
-		sampler_albedo(material->table, theta_o, rgb);
+	if (material->albedo)
+		albedo_cached(material->albedo, material->table, theta_o, rgb);
 	else
 		rgb[0] = rgb[1] = rgb[2] = 0;
 }

@@ -33,10 +33,4 @@ float sampler_draw(const struct sampler *sampler, const float wo[3], const float
 /* The density of wi given wo; 0 where either is unusable (see evaluate.h). */
 float sampler_pdf(const struct sampler *sampler, const float wi[3], const float wo[3]);
 
-/*
- * The directional albedo, integral of f cos theta_i dw_i, for theta_o in radians in [0, pi/2); outside, and for NaN: 0.
- * By quadrature over the half-angle, 65,536 values: some milliseconds.
- */
-void sampler_albedo(const struct table *table, float theta_o, float rgb[3]);
-
 #endif
