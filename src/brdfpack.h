@@ -180,6 +180,8 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
  * 1e-18 to 1e18). A direction that is below or on the horizon (z <= 0), zero, infinite or NaN is *unusable*:
  * functions say what it gives, never a NaN.
  *
+ * Evaluation looks values up in one table: what a record leaves out, independent pairs and detail that is 0, costs nothing.
+ *
  * Values are the BRDF f in 1/sr, linear, in the measured R, G and B; the caller multiplies by cos theta_i.
  * They are finite, not negative, and the same when wi and wo change places.
  *

@@ -51,13 +51,6 @@ static int archive_make(void **state)
 	return 0;
 }
 
-static bp_status record_bytes_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (const uint8_t *)user + offset, count);
-	return BP_OK;
-}
-
 static bp_archive *opened(void)
 {
 	bp_archive *archive = NULL;
@@ -116,56 +109,9 @@ static void a_loaded_material_gives_what_its_decoded_table_gives(void **state)
 	bp_archive_close(archive);
 }
 
-static void a_preview_holds_every_second_corner(void **state)
+static void a_preview_is_the_same_material_on_fewer_corners(void **state)
 {
 	(void)state;
-	const enum profile profiles[] = {PROFILE_PAPER, PROFILE_DEFAULT};
-	for (int p = 0; p < 2; p++) {
-		struct lattice lattice;
-		struct fit_options options = {profiles[p], 60400, 0, 5};
-		struct model *fitted = NULL;
-		struct expansion whole, half;
-		struct lattice_dims dims = {24, 20, 48}, small;
-		struct record_source source = {.bytes = 1};
-		struct record_head head;
-		uint8_t *record = NULL;
-		size_t bytes;
-		bp_error error;
-		assert_int_equal(lattice_alloc(dims, &lattice, NULL), BP_OK);
-		for (uint32_t i = 0; i < dims.theta_h; i++)
-			for (uint32_t j = 0; j < dims.theta_d; j++)
-				for (uint32_t k = 0; k < dims.phi_d; k++)
-					for (int c = 0; c < 3; c++)
-						lattice.rgb[c][lattice_index(dims, i, j, k)] =
-							0.1 * (c + 1) + 3 * exp(-0.02 * i * i) * (1 + 0.01 * j * cos(2 * M_PI * k / dims.phi_d) + 0.02 * c * j);
-		lattice_validate(&lattice);
-		if (record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, &error))
-			fail_msg("%s", error.message);
-		for (uint32_t layers = 1; layers <= head.layer_count; layers++) {
-			if (record_decode(&head, layers, record_bytes_fetch, record, &fitted, &error))
-				fail_msg("%s", error.message);
-			assert_true(model_has_half(dims, &small));
-			assert_int_equal(expansion_alloc(dims, &whole, NULL), BP_OK);
-			assert_int_equal(expansion_alloc(small, &half, NULL), BP_OK);
-			assert_int_equal(model_expand(fitted, 0, &whole, &error), BP_OK);
-			assert_int_equal(model_expand_half(fitted, 0, &half, &error), BP_OK);
-			for (uint32_t i = 0; i < small.theta_h; i++)
-				for (uint32_t j = 0; j < small.theta_d; j++)
-					for (uint32_t k = 0; k < small.phi_d; k++)
-						for (int c = 0; c < 3; c++) {
-							double a = (double)whole.rgb[c][lattice_index(dims, 2 * i, 2 * j, 2 * k)] * whole.unit;
-							double b = (double)half.rgb[c][lattice_index(small, i, j, k)] * half.unit;
-							assert_true(fabs(a - b) <= 1e-4 * a);
-						}
-			assert_int_equal(model_expand_half(fitted, 0, &whole, &error), BP_ERROR_ARGUMENT);
-			expansion_free(&whole);
-			expansion_free(&half);
-			model_free(fitted);
-		}
-		free(record);
-		lattice_free(&lattice);
-	}
-
 	bp_archive *archive = opened(); /* 12 x 10 x 24 */
 	bp_load_options options = {.struct_bytes = sizeof options, .form = BP_FORM_PREVIEW};
 	bp_loaded loaded = {.struct_bytes = sizeof loaded};
@@ -332,6 +278,34 @@ static void several_threads_load_from_one_archive(void **state)
 	bp_archive_close(archive);
 }
 
+static void a_file_replaced_while_open_stays_the_old_one(void **state)
+{
+	(void)state;
+	size_t count;
+	uint8_t *bytes = fixture_file_read(fixture_path("hundred.bpk"), &count);
+	char path[512], other[512];
+	bp_archive *archive = NULL;
+	bp_material *material = NULL;
+	float wi[3], wo[3], before[3], after[3];
+	directions(3, wi, wo);
+	strcpy(path, fixture_path("open.bpk"));
+	strcpy(other, fixture_path("other.bpk"));
+	fixture_file_write(path, bytes, count);
+	fixture_file_write(other, "something else", 14);
+	assert_int_equal(bp_archive_open(path, &archive, NULL), BP_OK);
+	assert_int_equal(bp_material_load(archive, 9, NULL, &material, NULL), BP_OK);
+	bp_material_evaluate(material, wi, wo, before);
+	bp_material_free(material);
+	assert_int_equal(rename(other, path), 0);
+	assert_int_equal(bp_material_load(archive, 9, NULL, &material, NULL), BP_OK);
+	bp_material_evaluate(material, wi, wo, after);
+	assert_memory_equal(before, after, sizeof before);
+	bp_material_free(material);
+	bp_archive_close(archive);
+	assert_int_equal(bp_archive_open(path, &archive, NULL), BP_ERROR_NOT_OURS);
+	free(bytes);
+}
+
 static void a_file_damaged_while_open_gives_errors(void **state)
 {
 	(void)state;
@@ -368,12 +342,13 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_loaded_material_gives_what_its_decoded_table_gives),
-		cmocka_unit_test(a_preview_holds_every_second_corner),
+		cmocka_unit_test(a_preview_is_the_same_material_on_fewer_corners),
 		cmocka_unit_test(options_decide_what_is_there_and_it_says_so),
 		cmocka_unit_test(options_out_of_range_are_refused),
 		cmocka_unit_test(opening_and_loading_read_little_more_than_the_record),
 		cmocka_unit_test(a_material_outlives_its_archive),
 		cmocka_unit_test(several_threads_load_from_one_archive),
+		cmocka_unit_test(a_file_replaced_while_open_stays_the_old_one),
 		cmocka_unit_test(a_file_damaged_while_open_gives_errors),
 	};
 	return cmocka_run_group_tests(tests, archive_make, fixture_folder_remove);

@@ -7,9 +7,10 @@ Material "measured" "string filename" [ "alpha" ]
 END
 printf '<bsdf type="measured"><string name="material" value='"'beta'"'/></bsdf>' >scene.xml
 printf 'def Material "gamma" { asset info:id = @x@ }\n' >scene.usda
+printf '{"materials":["beta",\n"gamma"]}' >scene.json
 printf '{"material":"alphabet","other":" beta "}\n' >none.json
 names() { brdfpack list --json "$1" | sed -n 's/.*"name": *"\([^"]*\)".*/\1/p' | tr '\n' ' '; echo; }
-for scene in scene.pbrt scene.xml scene.usda; do
+for scene in scene.pbrt scene.xml scene.usda scene.json; do
 	brdfpack subset -q -o out.bpk --scene "$scene" all.bpk
 	names out.bpk
 done
