@@ -24,6 +24,8 @@ struct compare {
 	struct source_list sources;
 	struct compare_item *items;
 	size_t count, printed, failed;
+	bool headed;      /* the table's head has been printed */
+	bool images_made; /* the pictures' folder is ours */
 	const char **wanted; /* the items' names, sorted: for source_scan */
 	struct compare_job job;
 };
@@ -101,10 +103,12 @@ static bp_status sources_find(struct compare *compare, bp_error *error)
 }
 
 /* The folder for pictures, made if need be; checked before anything is computed. */
-static bp_status images_prepare(const char *folder, bp_error *error)
+static bp_status images_prepare(struct compare *compare, bp_error *error)
 {
+	const char *folder = compare->images;
 	struct stat status;
-	if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+	compare->images_made = mkdir(folder, 0777) == 0;
+	if (!compare->images_made && errno != EEXIST)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot create the folder: %s", folder, strerror(errno));
 	if (stat(folder, &status) != 0 || !S_ISDIR(status.st_mode))
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: not a folder", folder);
@@ -140,8 +144,12 @@ static void rows_print(struct compare *compare)
 			report_error(compare->archive_path, item->entry.name, item->error);
 		free(item->error);
 		item->error = NULL;
-		if (!item->failed)
-			compare_report_row(&compare->report, item);
+		if (item->failed)
+			continue;
+		if (!compare->headed)
+			compare_report_head(&compare->report);
+		compare->headed = true;
+		compare_report_row(&compare->report, item);
 	}
 	fflush(stdout);
 }
@@ -229,14 +237,13 @@ static int materials_compare(struct compare *compare)
 	bp_error error;
 	bp_status status = items_read(compare, &error);
 	if (status == BP_OK && compare->images)
-		status = images_prepare(compare->images, &error);
+		status = images_prepare(compare, &error);
 	if (status == BP_OK)
 		status = sources_find(compare, &error);
 	if (status == BP_OK && compare->failed == compare->count)
 		return EXIT_FAILED; /* nothing to compare: all of it was reported */
 	if (status == BP_OK) {
 		name_width_set(compare);
-		compare_report_head(&compare->report);
 		status = materials_measure(compare, &error);
 	}
 	if (interrupt_signal())
@@ -299,6 +306,8 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	} else if (!compare.selection.incomplete) {
 		report_text("%s: no material in it", compare.archive_path);
 	}
+	if (code != EXIT_OK && compare.images_made)
+		rmdir(compare.images); /* where it holds pictures it stays */
 	comparison_plans_free(&compare.job.plans);
 	source_list_free(&compare.sources);
 	for (size_t n = 0; n < compare.count && compare.items; n++)

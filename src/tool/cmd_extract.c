@@ -100,22 +100,21 @@ static bp_status json_write(const struct record_head *head, const char *path, bp
 /* One material into FOLDER/NAME.binary or .json. Names hold no '/', so it cannot land anywhere else. */
 static bool material_extract(struct selection *selection, uint64_t n, const char *folder, bool json, struct table *table)
 {
-	struct index_entry entry = {.name = ""};
+	struct index_entry entry;
 	struct record_head head;
 	bp_error error;
-	bp_status status = selection_entry(selection, n, &entry, &error);
-	if (!status)
-		status = archive_entry_head(selection->archive, &entry, &head, &error);
-	if (!status) {
-		char *path = folder_path(folder, entry.name, json ? "json" : "binary");
-		if (!path)
-			status = error_memory(&error, strlen(folder));
-		else
-			status = json ? json_write(&head, path, &error) : merl_write(selection, &entry, &head, path, table, &error);
-		free(path);
-	}
+	bp_status status;
+	char *path;
+	if (!selection_head(selection, n, &entry, &head))
+		return false;
+	path = folder_path(folder, entry.name, json ? "json" : "binary");
+	if (!path)
+		status = error_memory(&error, strlen(folder));
+	else
+		status = json ? json_write(&head, path, &error) : merl_write(selection, &entry, &head, path, table, &error);
+	free(path);
 	if (status)
-		report_error(selection->path, entry.name[0] ? entry.name : NULL, &error);
+		report_error(selection->path, entry.name, &error);
 	return !status;
 }
 
@@ -140,10 +139,9 @@ static int extract_main(const struct command *self, int argc, char **argv)
 	}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (optind >= argc)
-		return report_usage(self, "no archive");
-	if (!selection_open(&selection, argv[optind], argv + optind + 1, argc - optind - 1))
-		return EXIT_FAILED;
+	int opened = selection_from(&selection, self, argv + optind, argc - optind);
+	if (opened != EXIT_OK)
+		return opened;
 	whole = !selection.incomplete;
 	if (selection.count > 0 && !folder_create(folder)) {
 		selection_close(&selection);

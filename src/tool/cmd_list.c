@@ -144,22 +144,18 @@ static int list_main(const struct command *self, int argc, char **argv)
 		json = true; /* the only option */
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (optind >= argc)
-		return report_usage(self, "no archive");
-	if (!selection_open(&selection, argv[optind], argv + optind + 1, argc - optind - 1))
-		return EXIT_FAILED;
+	int opened = selection_from(&selection, self, argv + optind, argc - optind);
+	if (opened != EXIT_OK)
+		return opened;
 	if (selection.all && !json) {
 		width = widest_name(&selection);
 		printf("%-*s %9s  %-7s %6s  %8s   %-29s   %s\n", width, "material", "bytes", "profile", "layers", "log RMSE",
 		       "diffuse R, G, B (1/sr)", "specular R, G, B");
 	}
 	for (uint64_t i = 0; i < selection.count && !ferror(stdout); i++) {
-		struct index_entry entry = {.name = ""};
+		struct index_entry entry;
 		struct record_head head;
-		bp_error error;
-		if (selection_entry(&selection, i, &entry, &error) ||
-		    archive_entry_head(selection.archive, &entry, &head, &error)) {
-			report_error(selection.path, entry.name[0] ? entry.name : NULL, &error);
+		if (!selection_head(&selection, i, &entry, &head)) {
 			totals.failed++;
 			continue;
 		}

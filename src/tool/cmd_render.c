@@ -95,11 +95,8 @@ static int render_main(const struct command *self, int argc, char **argv)
 		}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (!options.output)
-		return report_usage(self, "no output (-o OUT.png or OUT.pfm)");
-	options.pfm = text_ends_with(options.output, ".pfm");
-	if (!options.pfm && !text_ends_with(options.output, ".png"))
-		return report_usage(self, "'%s' ends in neither .png nor .pfm", options.output);
+	if (!option_picture(self, options.output, ".pfm", &options.pfm))
+		return EXIT_USAGE;
 	int code = material_load(self, argv + optind, argc - optind, &material);
 	if (code != EXIT_OK)
 		return code;

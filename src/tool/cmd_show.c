@@ -186,11 +186,8 @@ static int show_main(const struct command *self, int argc, char **argv)
 		}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (!options.output)
-		return report_usage(self, "no output (-o OUT.png or OUT.svg)");
-	options.svg = text_ends_with(options.output, ".svg");
-	if (!options.svg && !text_ends_with(options.output, ".png"))
-		return report_usage(self, "'%s' ends in neither .png nor .svg", options.output);
+	if (!option_picture(self, options.output, ".svg", &options.svg))
+		return EXIT_USAGE;
 	struct show *show = calloc(1, sizeof *show);
 	if (!show) {
 		report_text("out of memory");

@@ -122,6 +122,18 @@ bool option_number(const struct command *command, const char *option, const char
 	return true;
 }
 
+bool option_picture(const struct command *command, const char *output, const char *other, bool *is_other)
+{
+	*is_other = output && text_ends_with(output, other);
+	if (!output)
+		report_usage(command, "no output (-o OUT.png or OUT%s)", other);
+	else if (!*is_other && !text_ends_with(output, ".png"))
+		report_usage(command, "'%s' ends in neither .png nor %s", output, other);
+	else
+		return true;
+	return false;
+}
+
 bool text_ends_with(const char *text, const char *end)
 {
 	size_t text_bytes = strlen(text), end_bytes = strlen(end);

@@ -41,6 +41,12 @@ bool option_bytes(const struct command *command, const char *option, const char 
 bool option_number(const struct command *command, const char *option, const char *text, double least, double most,
                    double *out);
 
+/*
+ * Checks what -o names, a picture: it ends in .png or in `other`, and *is_other tells which; otherwise a usage message and
+ * false. NULL: no -o was given.
+ */
+bool option_picture(const struct command *command, const char *output, const char *other, bool *is_other);
+
 /* Whether a path has this ending, and something before it. */
 bool text_ends_with(const char *text, const char *end);
 

@@ -63,6 +63,13 @@ bool selection_open(struct selection *selection, const char *path, char **names,
 	return true;
 }
 
+int selection_from(struct selection *selection, const struct command *command, char **operands, int operand_count)
+{
+	if (operand_count < 1)
+		return report_usage(command, "no archive");
+	return selection_open(selection, operands[0], operands + 1, operand_count - 1) ? EXIT_OK : EXIT_FAILED;
+}
+
 void selection_close(struct selection *selection)
 {
 	bp_archive_close(selection->archive);
@@ -73,4 +80,14 @@ void selection_close(struct selection *selection)
 bp_status selection_entry(struct selection *selection, uint64_t n, struct index_entry *entry, bp_error *error)
 {
 	return archive_entry(selection->archive, selection->all ? n : selection->index[n], &selection->leaf, entry, error);
+}
+
+bool selection_head(struct selection *selection, uint64_t n, struct index_entry *entry, struct record_head *head)
+{
+	bp_error error;
+	*entry = (struct index_entry){.name = ""};
+	if (!selection_entry(selection, n, entry, &error) && !archive_entry_head(selection->archive, entry, head, &error))
+		return true;
+	report_error(selection->path, entry->name[0] ? entry->name : NULL, &error);
+	return false;
 }

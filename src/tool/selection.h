@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "../archive/reader.h"
+#include "command.h"
 
 /* An open archive and the materials that were asked for. */
 struct selection {
@@ -27,9 +28,14 @@ struct selection {
  * spelling and left out.
  */
 bool selection_open(struct selection *selection, const char *path, char **names, int name_count);
+/* The same from operands ARCHIVE [NAME]...; an exit code. */
+int selection_from(struct selection *selection, const struct command *command, char **operands, int operand_count);
 void selection_close(struct selection *selection);
 
 /* The index entry of the n-th selected material. A walk over all reads every index page once. */
 bp_status selection_entry(struct selection *selection, uint64_t n, struct index_entry *entry, bp_error *error);
+
+/* The same with the record's head; reports what goes wrong, and is false then. */
+bool selection_head(struct selection *selection, uint64_t n, struct index_entry *entry, struct record_head *head);
 
 #endif
