@@ -95,7 +95,7 @@ static const struct vector VECTORS[] = {
 	{ "good-dropped-layer", BP_OK, "A record whose last layer was dropped: two layers, bit 2 of left out is clear.", make_dropped_layer },
 	{ "good-minor", BP_OK, "Minor version 1, ignorable flags, and reserved bytes in use.", make_minor },
 	{ "good-default", BP_OK, "The default profile, 16x15x6, cut off in its lowest plane by a budget of 1500 bytes.", make_default },
-	{ "good-default-layers", BP_OK, "The default profile, 20x17x9, two layers.", make_default_layers },
+	{ "good-default-layers", BP_OK, "The default profile, 17x15x7, two layers.", make_default_layers },
 	{ "good-default-least", BP_OK, "The default profile, 4x4x4, complete.", make_default_least },
 	{ "good-default-bright", BP_OK, "The default profile, values around 1e300.", make_default_bright },
 	{ "good-default-dark", BP_OK, "The default profile, values around 1e-300.", make_default_dark },
