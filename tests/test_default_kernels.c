@@ -139,7 +139,6 @@ static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 	for (int f = 0; f < 3; f++)
 		for (int i = 0; i < ROWS * STRIDE; i++)
 			field[f][i] = (float)(8 * uniform() - 4);
-	field[0][5] = NAN;
 	field[0][6] = 1e30f;
 	for (size_t width = 1; width <= STRIDE; width += 5)
 		for (int n = 0; n < 2; n++)

@@ -61,17 +61,10 @@ static uint32_t bytes_to_read(const struct record_head *head, uint32_t layers)
 
 static bp_status material_build(const struct model *model, const bp_load_options *options, bp_material *material, bp_error *error)
 {
-	struct expansion expansion;
 	struct lattice_dims half;
 	const bool preview = options->form == BP_FORM_PREVIEW && model_has_half(model->dims, &half);
-	bp_status status = expansion_alloc(preview ? half : model->dims, &expansion, error);
-	if (status)
-		return status;
-	status = (preview ? model_expand_half : model_expand)(model, 0, &expansion, error);
-	if (!status)
-		status = table_build(&expansion, options->form == BP_FORM_COMPACT ? TABLE_COMPACT : TABLE_EXPANDED,
-		                     options->colour == BP_COLOUR_RGB ? 3 : 1, &material->table, error);
-	expansion_free(&expansion);
+	bp_status status = table_build_model(model, preview, options->form == BP_FORM_COMPACT ? TABLE_COMPACT : TABLE_EXPANDED,
+	                                     options->colour == BP_COLOUR_RGB ? 3 : 1, &material->table, error);
 	if (!status && options->sampling)
 		status = sampler_build(material->table, &material->sampler, error);
 	if (!status && options->sampling)

@@ -85,17 +85,21 @@ static void KERNEL(default_moments)(const float *const x[3], size_t n, double su
 	}
 }
 
-/* n cells of one channel */
+/*
+ * n cells of one channel. The limits are those of the numbers as integers, which is the same for positive ones and takes half the
+ * instructions; negative ones become 0. No field is NaN: fields are sums of finite coefficients within 2^64 each.
+ */
 static inline __attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
                                                                          const float rotation[3], float most, float *restrict out)
 {
 	const float *a = field[0] + at, *b = field[1] + at, *d = field[2] + at;
+	const int32_t limit = (int32_t)bits_of_float(most);
 
 	for (size_t k = 0; k < n; k++) {
-		float l = base + (rotation[0] * a[k] + rotation[1] * b[k] + rotation[2] * d[k]);
-		l = l > most ? most : l;
-		l = l > 0 ? l : 0; /* NaN becomes 0 as well */
-		out[k] = fast_exp2f_within(l) - 1;
+		int32_t l = (int32_t)bits_of_float(base + (rotation[0] * a[k] + rotation[1] * b[k] + rotation[2] * d[k]));
+		l = l < 0 ? 0 : l;
+		l = l > limit ? limit : l;
+		out[k] = fast_exp2f_within(float_of_bits((uint32_t)l)) - 1;
 	}
 }
 
@@ -118,6 +122,75 @@ static void KERNEL(default_values)(const float *const field[3], size_t rows, siz
 				KERNEL(channel_values)(field, i * stride, BLOCK, base[c], weight, most, out);
 			else
 				KERNEL(channel_values)(field, i * stride, width, base[c], weight, most, out);
+		}
+}
+
+typedef uint16_t KERNEL(codes8) __attribute__((vector_size(16)));
+
+/* 16 values as codes in units of 2^39. */
+static inline __attribute__((always_inline)) void KERNEL(channel_codes)(const float *value, uint16_t *restrict out)
+{
+	for (int k = 0; k < 16; k++) {
+		int32_t code = (int32_t)((bits_of_float(value[k]) + 0x1000) >> 13) - ((127 + 39 - 63) << 10);
+		code = code < 1 << 10 ? 0 : code;
+		out[k] = (uint16_t)(code > 65535 ? 65535 : code);
+	}
+}
+
+/* Eight cells' R, G and B side by side. */
+static inline __attribute__((always_inline)) void KERNEL(codes_interleave)(const uint16_t *rgb, size_t channel, uint16_t *out)
+{
+	KERNEL(codes8) r, g, b, first, second, third;
+	memcpy(&r, rgb, sizeof r);
+	memcpy(&g, rgb + channel, sizeof g);
+	memcpy(&b, rgb + 2 * channel, sizeof b);
+	first = __builtin_shufflevector(r, g, 0, 8, 0, 1, 9, 0, 2, 10);
+	second = __builtin_shufflevector(r, g, 0, 3, 11, 0, 4, 12, 0, 5);
+	third = __builtin_shufflevector(r, g, 13, 0, 6, 14, 0, 7, 15, 0);
+	first = __builtin_shufflevector(first, b, 0, 1, 8, 3, 4, 9, 6, 7);
+	second = __builtin_shufflevector(second, b, 10, 1, 2, 11, 4, 5, 12, 7);
+	third = __builtin_shufflevector(third, b, 0, 13, 2, 3, 14, 5, 6, 15);
+	memcpy(out, &first, sizeof first);
+	memcpy(out + 8, &second, sizeof second);
+	memcpy(out + 16, &third, sizeof third);
+}
+
+static void KERNEL(default_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
+                                  const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride)
+{
+	enum { BLOCK = 16 };
+	const float weight[3][3] = {{rotation[0][0], rotation[1][0], rotation[2][0]},
+	                            {rotation[0][1], rotation[1][1], rotation[2][1]},
+	                            {rotation[0][2], rotation[1][2], rotation[2][2]}};
+	float value[3][BLOCK];
+	uint16_t code[3 * BLOCK], mixed[3 * BLOCK];
+
+	for (size_t i = 0; i < rows; i++)
+		for (size_t k = 0; k < width; k += BLOCK) {
+			const size_t count = width - k < BLOCK ? width - k : BLOCK;
+			uint16_t *to = out + i * out_stride + (size_t)channels * k;
+			if (stride == BLOCK && i + 16 < rows) { /* see default_values */
+				__builtin_prefetch(to + 16 * out_stride, 1);
+				__builtin_prefetch(to + 16 * out_stride + BLOCK * (size_t)channels - 1, 1);
+				for (int f = 0; f < 3; f++)
+					__builtin_prefetch(field[f] + (i + 16) * stride);
+			}
+			for (int c = 0; c < 3; c++)
+				KERNEL(channel_values)(field, i * stride + k, BLOCK, base[c], weight[c], most, value[c]);
+			if (channels == 3) {
+				for (int c = 0; c < 3; c++)
+					KERNEL(channel_codes)(value[c], code + c * BLOCK);
+				KERNEL(codes_interleave)(code, BLOCK, mixed);
+				KERNEL(codes_interleave)(code + 8, BLOCK, mixed + 24);
+			} else {
+				for (int n = 0; n < BLOCK; n++)
+					value[0][n] = (value[0][n] + value[1][n] + value[2][n]) * (1.0f / 3);
+				KERNEL(channel_codes)(value[0], mixed);
+			}
+			if (count == BLOCK && channels == 3)
+				memcpy(to, mixed, sizeof mixed);
+			else
+				memcpy(to, mixed, count * (size_t)channels * sizeof *mixed);
 		}
 }
 

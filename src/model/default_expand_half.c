@@ -4,6 +4,8 @@
  * A preview's layers use few harmonics of each field, so here the wavelets come first, on blocks of harmonics instead of
  * blocks of cells; then the cosines and exponentials, on a quarter and an eighth.
  */
+#include "default_expand.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,34 +68,31 @@ static bp_status narrow_make(const struct spectrum_inverse *inverse, const struc
 	return BP_OK;
 }
 
-bp_status default_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+bp_status default_expand_half_blocks(const struct model *model, uint32_t layers, default_block_fn *take, void *user, bp_error *error)
 {
-	const struct kernels *kernels = kernels_get();
-	const struct default_model *m = model->log_density;
-	const struct lattice_dims d = model->dims, h = out->dims;
+	const struct lattice_dims d = model->dims, h = {d.theta_h / 2, d.theta_d / 2, d.phi_d / 2};
 	const size_t columns = (h.phi_d + COLUMNS_STEP - 1) / COLUMNS_STEP * COLUMNS_STEP, slice = (size_t)h.theta_d * columns;
 	const size_t plane_bytes = (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof(float);
 	struct narrow narrow[3] = {{0}};
 	struct spectrum_inverse *inverse = NULL;
 	struct default_terms terms = {0};
-	const float most = default_most(m->unit);
 	float *plane = memory_alloc(plane_bytes), *fields = malloc(3 * slice * sizeof(float));
 	bp_status status = plane && fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, plane_bytes);
 
 	if (!status)
-		status = default_terms_make(m, inverse, layers, &terms, error);
+		status = default_terms_make(model->log_density, inverse, layers, &terms, error);
 	for (size_t f = 0; !status && f < 3; f++)
 		status = narrow_make(inverse, &terms, terms.start + f * d.phi_d, columns, plane, &narrow[f], error);
 	for (size_t i = 0; !status && i < h.theta_h; i++) {
+		const struct default_block block = {
+			.field = {fields, fields + slice, fields + 2 * slice},
+			.row = i * h.theta_d, .rows = h.theta_d, .width = h.phi_d, .stride = columns,
+		};
 		for (size_t f = 0; f < 3; f++)
-			kernels->cosine_product(narrow[f].value + i * h.theta_d * narrow[f].stride, narrow[f].stride, h.theta_d, narrow[f].count,
-			                        narrow[f].matrix, columns, fields + f * slice, columns);
-		const float *const field[3] = {fields, fields + slice, fields + 2 * slice};
-		const size_t at = i * h.theta_d * h.phi_d;
-		float *const rgb[3] = {out->rgb[0] + at, out->rgb[1] + at, out->rgb[2] + at};
-		kernels->default_values(field, h.theta_d, h.phi_d, columns, m->base, (const float(*)[3])m->rotation, most, rgb, h.phi_d);
+			kernels_get()->cosine_product(narrow[f].value + i * h.theta_d * narrow[f].stride, narrow[f].stride, h.theta_d, narrow[f].count,
+			                              narrow[f].matrix, columns, fields + f * slice, columns);
+		take(user, &block);
 	}
-	out->unit = m->unit;
 	for (int f = 0; f < 3; f++) {
 		free(narrow[f].harmonic);
 		free(narrow[f].value);

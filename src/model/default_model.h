@@ -24,6 +24,7 @@
 /* Of the unit, in 1/sr: a normal number with a reciprocal, and the hundredth of any value is one. */
 #define DEFAULT_UNIT_LEAST 0x1p-1022
 #define DEFAULT_UNIT_MOST 0x1p999
+#define DEFAULT_CODES_UNIT 0x1p39 /* of default_codes of kernels.h: what its 1 is, in units */
 enum { DEFAULT_PLANES_MAX = 24 }; /* |level| < 2^24 */
 
 /* A level that is not 0. */

@@ -1,7 +1,7 @@
 /*
  * evaluate.h: a decoded table in the memory form a renderer evaluates from.
  *
- *     model_expand -> expansion -> table_build -> table_evaluate
+ *     model_expand -> expansion -> table_build -> table_evaluate      or: model -> table_build_model -> table_evaluate
  *
  * A stored value belongs to its cell's LOWER CORNER. Interpolation is trilinear on the corners, in
  * 1/sr, periodic in phi_d; beyond the last corner of theta_h and theta_d the last value stays. The
@@ -9,7 +9,7 @@
  * smoothly, so no "not measured" mark enters an interpolation; directions below the horizon give 0.
  *
  * Expanded form: per cell and channel one unsigned 16-bit float, 6 exponent bits and 10 of mantissa:
- * relative error at most 2^-11 down to 2^-62 of the table's largest value, 0 below. Rows of phi_d
+ * relative error at most 2^-11 down to 2^-61 of the table's largest value, 0 below. Rows of phi_d
  * hold one cell more, a copy of the first. MERL, RGB: 8,796,616 bytes.
  *
  * Compact form: compact.h.
@@ -18,6 +18,7 @@
 #define MODEL_EVALUATE_H
 
 #include "../merl/lattice.h"
+#include "model.h"
 
 /* A table's largest value, in 1/sr, is cut to this: a float holds it with room to spare. */
 #define TABLE_LARGEST 1e34
@@ -28,6 +29,11 @@ struct table; /* immutable once built: any number of threads may evaluate it */
 
 /* channels: 3 (RGB), or 1: the mean of the three, given back in all of them. The expansion is not needed afterwards. */
 bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error);
+/*
+ * The same of all of a model's layers, or, with `half`, of every second corner of it (model_expand_half), and quicker: of a decoded
+ * default profile's expanded form no table of floats is made. BP_ERROR_ARGUMENT where there is no half.
+ */
+bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error);
 void table_free(struct table *table); /* NULL is allowed */
 size_t table_bytes(const struct table *table);
 struct lattice_dims table_dims(const struct table *table);

@@ -155,6 +155,12 @@ struct kernels {
 	 */
 	void (*default_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
 	                       const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride);
+	/*
+	 * The same as 16-bit floats of table.h's expanded form, in units of 2^39 (that of l = 40 is 65535): `channels` of them for
+	 * every cell, or 1, the channels' mean; rows of `width` cells are out_stride codes apart.
+	 */
+	void (*default_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
+	                      const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride);
 	/* field_f = sum over c of rotation[f][c] x_c, in place. */
 	void (*default_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
 	/*

@@ -31,6 +31,7 @@ const struct kernels KERNEL(kernels) = {
 	.default_largest = KERNEL(default_largest),
 	.default_moments = KERNEL(default_moments),
 	.default_values = KERNEL(default_values),
+	.default_codes = KERNEL(default_codes),
 	.default_rotate = KERNEL(default_rotate),
 	.default_smooth = KERNEL(default_smooth),
 	.default_shrink = KERNEL(default_shrink),

@@ -1,0 +1,114 @@
+/* table_build_model: tables straight from a model, beside those made by way of an expansion. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "codec/record.h"
+#include "model/evaluate.h"
+
+static bp_status record_bytes_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
+{
+	(void)error;
+	memcpy(bytes, (const uint8_t *)user + offset, count);
+	return BP_OK;
+}
+
+static void directions(int n, float wi[3], float wo[3])
+{
+	double a = 0.1 + n * 0.37, b = n * 1.71, c = fmod(n * 0.61, 1.5), d = fmod(n * 0.83, 1.5);
+	wi[0] = (float)(sin(c) * cos(a)), wi[1] = (float)(sin(c) * sin(a)), wi[2] = (float)cos(c);
+	wo[0] = (float)(sin(d) * cos(b)), wo[1] = (float)(sin(d) * sin(b)), wo[2] = (float)cos(d);
+}
+
+/* Packs and decodes a coloured lobe. */
+static struct model *model_make(enum profile profile, struct lattice_dims dims, double unit)
+{
+	const struct fit_options options = {profile, 60400, 0, 5};
+	const struct record_source source = {.bytes = 1};
+	struct lattice lattice;
+	struct record_head head;
+	struct model *model = NULL;
+	uint8_t *record = NULL;
+	size_t bytes;
+	assert_int_equal(lattice_alloc(dims, &lattice, NULL), BP_OK);
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++)
+			for (uint32_t k = 0; k < dims.phi_d; k++)
+				for (int c = 0; c < 3; c++)
+					lattice.rgb[c][lattice_index(dims, i, j, k)] =
+						unit * (0.1 * (c + 1) + 3 * exp(-0.02 * i * i) * (1 + 0.01 * j * cos(2 * M_PI * k / dims.phi_d) + 0.02 * c * j));
+	lattice_validate(&lattice);
+	assert_int_equal(record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_decode(&head, 0, record_bytes_fetch, record, &model, NULL), BP_OK);
+	lattice_free(&lattice);
+	free(record);
+	return model;
+}
+
+static void same_values(const struct model *model, bool half, enum table_form form, int channels)
+{
+	struct lattice_dims dims = model->dims;
+	struct table *direct = NULL, *by_way = NULL;
+	struct expansion expansion;
+	if (half && !model_has_half(model->dims, &dims)) {
+		assert_int_equal(table_build_model(model, true, form, channels, &direct, NULL), BP_ERROR_ARGUMENT);
+		return;
+	}
+	assert_int_equal(expansion_alloc(dims, &expansion, NULL), BP_OK);
+	assert_int_equal((half ? model_expand_half : model_expand)(model, 0, &expansion, NULL), BP_OK);
+	assert_int_equal(table_build(&expansion, form, channels, &by_way, NULL), BP_OK);
+	assert_int_equal(table_build_model(model, half, form, channels, &direct, NULL), BP_OK);
+	assert_int_equal(table_bytes(direct), table_bytes(by_way));
+	for (int m = 0; m < 300; m++) {
+		float wi[3], wo[3], a[3], b[3];
+		directions(m, wi, wo);
+		table_evaluate(direct, wi, wo, a);
+		table_evaluate(by_way, wi, wo, b);
+		assert_memory_equal(a, b, sizeof a);
+		assert_true(a[0] > 0);
+	}
+	expansion_free(&expansion);
+	table_free(direct);
+	table_free(by_way);
+}
+
+static void a_table_of_a_model_is_that_of_its_expansion(void **state)
+{
+	static const struct lattice_dims DIMS[] = {{24, 20, 48}, {17, 16, 19}, {16, 18, 8}};
+	static const double UNITS[] = {1, 1e7, 1e-5, 1e200};
+	(void)state;
+	for (int n = 0; n < 12; n++)
+		for (int profile = PROFILE_PAPER; profile <= PROFILE_DEFAULT; profile++) {
+			struct model *model = model_make((enum profile)profile, DIMS[n % 3], UNITS[n / 3]);
+			for (int half = 0; half < 2; half++)
+				for (int channels = 1; channels <= 3; channels += 2)
+					for (int form = 0; form < 2; form++)
+						same_values(model, half, (enum table_form)form, channels);
+			model_free(model);
+		}
+}
+
+static void forms_and_channels_that_do_not_exist_are_refused(void **state)
+{
+	struct model *model = model_make(PROFILE_DEFAULT, (struct lattice_dims){8, 8, 8}, 1);
+	struct table *table = NULL;
+	(void)state;
+	assert_int_equal(table_build_model(model, false, TABLE_EXPANDED, 2, &table, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(table_build_model(model, false, (enum table_form)7, 3, &table, NULL), BP_ERROR_ARGUMENT);
+	model_free(model);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_table_of_a_model_is_that_of_its_expansion),
+		cmocka_unit_test(forms_and_channels_that_do_not_exist_are_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
