@@ -21,7 +21,7 @@ awk -F '\t' -v budget="$budget" '
 		}
 		if ($1 == "(median)") {
 			order[++methods] = method
-			bytes[method] = $(column["bytes"]); fit[method] = $(column["fit_s"]); decode[method] = $(column["decode_s"])
+			bytes[method] = $(column["bytes"]); numbers[method] = $(column["parameters"]) == "-" ? "" : $(column["parameters"]); fit[method] = $(column["fit_s"]); decode[method] = $(column["decode_s"])
 			evaluate[method] = $(column["evaluate_ns"]); rmse[method] = $(column["log_rmse"])
 			all[method] = $(column["psnr_key_db"]) " / " $(column["psnr_env_db"])
 		} else {
@@ -32,7 +32,7 @@ awk -F '\t' -v budget="$budget" '
 	function published(who, values,    parts, n, line, any) {
 		n = split(values, parts, " ")
 		for (n = 1; n in parts; n += 2) value[parts[n]] = parts[n + 1]
-		line = "| *" who " (published)* | | | | | | |"
+		line = "| *" who " (published)* | | | | | | | |"
 		for (n = 1; n <= count; n++) {
 			line = line " " (materials[n] in value ? "*" value[materials[n]] "*" : "") " |"
 			any += materials[n] in value
@@ -43,13 +43,13 @@ awk -F '\t' -v budget="$budget" '
 	END {
 		if (!methods) {print "bench_table.sh: no rows at " budget " bytes" > "/dev/stderr"; exit 1}
 		printf "%s\n", head
-		line = "| method | bytes | fit s | decode s | evaluate ns | log RMSE | PSNR key / env |"; rule = "|---|--:|--:|--:|--:|--:|--:|"
+		line = "| method | bytes | numbers | fit s | decode s | evaluate ns | log RMSE | PSNR key / env |"; rule = "|---|--:|--:|--:|--:|--:|--:|--:|"
 		for (n = 1; n <= count; n++) {line = line " " materials[n] " |"; rule = rule "--:|"}
 		print line; print rule
 		for (m = 1; m <= methods; m++) {
 			method = order[m]
 			exact = rmse[method] < 1e-6
-			line = sprintf("| %s | %d | %.3g | %.2g | %.3g | %s | %s |", method, bytes[method], fit[method], decode[method], evaluate[method], \
+			line = sprintf("| %s | %d | %s | %.3g | %.2g | %.3g | %s | %s |", method, bytes[method], numbers[method], fit[method], decode[method], evaluate[method], \
 				exact ? "0" : sprintf("%.4g", rmse[method]), exact ? "exact" : all[method])
 			for (n = 1; n <= count; n++) line = line " " (exact ? "" : psnr[method, materials[n]]) " |"
 			print line
