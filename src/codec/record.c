@@ -1,9 +1,11 @@
 #include "record.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../error.h"
+#include "../model/fast_math.h"
 #include "../model/fidelity.h"
 #include "../stage.h"
 #include "name.h"
@@ -228,41 +230,73 @@ static double last_error(const struct packed *packed)
 	return packed->head.layers[packed->head.layer_count - 1].fidelity.log_rmse;
 }
 
+enum { SEARCH_START = 60400 }; /* bytes */
+
+/* What a search for a size knows: sizes that do not satisfy end at `low`, the smallest that does is `high`, 0 for none. */
+struct bracket {
+	uint32_t low, high;
+	double bytes[2], error[2]; /* the last two that were measured, the latest first; 0 for none */
+};
+
 /*
- * The smallest record whose error is at most max_error, found by halving the budget's range down to 1 % of itself:
- * the error does not fall with every byte, so a smaller record may exist that this does not find.
+ * Where to try next: errors fall about as bytes^-k, with k from the last two sizes, 0.85 before. A little more is asked than needed.
+ * Where that would not shrink the bracket, its middle.
+ */
+static uint32_t bracket_next(const struct bracket *b, double max_error)
+{
+	double k = 0.85;
+	const double low = b->low, high = b->high ? b->high : RECORD_BUDGET_MAX;
+
+	if (b->error[0] > 0 && b->error[1] > 0 && b->bytes[0] != b->bytes[1])
+		k = fmin(fmax(fast_log2(b->error[1] / b->error[0]) / fast_log2(b->bytes[0] / b->bytes[1]), 0.3), 3);
+	double next = b->error[0] > 0 ? 1.003 * b->bytes[0] * fast_exp2(fast_log2(b->error[0] / max_error) / k) : sqrt(low * high);
+	if (!b->high)
+		next = fmax(next, 1.1 * low);
+	else if (next <= low * 1.002 || next >= high * 0.998)
+		next = next <= low * 1.002 && low > high * 0.9 ? low * 1.005 : sqrt(low * high);
+	return (uint32_t)fmin(fmax(next, low + 1), b->high ? high - 1 : high);
+}
+
+/*
+ * The smallest record whose error is at most max_error, to 1 % of its size: the error does not fall with every byte, so a smaller
+ * record may exist that this does not find.
  */
 static bp_status record_search(const struct packing *packing, double max_error, struct packed *best, bp_error *error)
 {
-	uint32_t low = RECORD_BUDGET_MIN, high; /* high satisfies, low is not known to */
-	bp_status status = record_build(packing, RECORD_BUDGET_MAX, best, error);
-	if (status)
-		return status;
-	if (last_error(best) > max_error) {
-		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "an error of %g cannot be met: the least is %g, in %zu bytes",
-		                   max_error, last_error(best), best->bytes);
-		free(best->record);
-		best->record = NULL;
-		return status;
-	}
-	high = (uint32_t)best->bytes;
-	while (high > low && high - low > high / 100) {
-		uint32_t middle = low + (high - low) / 2;
+	struct bracket bracket = { .low = RECORD_BUDGET_MIN - 1 };
+	uint32_t size = SEARCH_START;
+
+	best->record = NULL;
+	while (!bracket.high || (bracket.high > bracket.low && bracket.high - bracket.low > bracket.high / 100 + 1)) {
 		struct packed trial = { .record = NULL };
-		status = record_build(packing, middle, &trial, error);
-		if (status && status != BP_ERROR_LIMIT) {
+		bp_status status = record_build(packing, size, &trial, error);
+		if (status && (status != BP_ERROR_LIMIT || size == RECORD_BUDGET_MAX)) {
 			free(best->record);
 			best->record = NULL;
 			return status;
 		}
-		if (status || last_error(&trial) > max_error) {
+		const double reached = status ? INFINITY : last_error(&trial);
+		if (reached > max_error && size == RECORD_BUDGET_MAX) {
+			status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "an error of %g cannot be met: the least is %g, in %zu bytes",
+			                   max_error, reached, trial.bytes);
 			free(trial.record);
-			low = middle;
+			return status;
+		}
+		if (!status) {
+			bracket.bytes[1] = bracket.bytes[0];
+			bracket.error[1] = bracket.error[0];
+			bracket.bytes[0] = (double)trial.bytes;
+			bracket.error[0] = reached;
+		}
+		if (reached > max_error) {
+			free(trial.record);
+			bracket.low = size;
 		} else {
 			free(best->record);
 			*best = trial;
-			high = (uint32_t)trial.bytes;
+			bracket.high = (uint32_t)trial.bytes;
 		}
+		size = bracket_next(&bracket, max_error);
 	}
 	return BP_OK;
 }
