@@ -66,6 +66,14 @@ uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end,
 /* default_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. */
 bp_status default_denoise(struct lattice_dims dims, float *coefficient, bool *noisy, bp_error *error);
 
+/*
+ * default_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of
+ * about so many bytes.
+ */
+struct spectrum;
+bp_status default_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3], double budget_bytes,
+                          int steps, float *const table[3], bp_error *error);
+
 /* default_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. */
 bp_status default_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], bp_error *error);
 
