@@ -14,7 +14,22 @@ struct compact_row {
 	float *weight;   /* what the shares' errors count, in (0, 1]: little in dark cells */
 };
 
-enum { CELLS_MAX = COMPACT_WIDTH_MAX + 1 };
+/* Cells 0..width of a block, and what makes them a whole number of vectors: read, but of no weight. */
+enum { CELLS_MAX = (COMPACT_WIDTH_MAX + 1 + 3) / 4 * 4 };
+
+typedef int32_t mask4 __attribute__((vector_size(16)));
+
+static inline f32x4 load4(const float *p)
+{
+	f32x4 v;
+	memcpy(&v, p, sizeof v);
+	return v;
+}
+
+static inline float sum4(f32x4 v)
+{
+	return (v[0] + v[1]) + (v[2] + v[3]);
+}
 
 /* Shares of cells well below this count little: 1e-3/sr, as a share of the table's largest value, within reason. */
 static float dark_of(double largest)
@@ -23,94 +38,114 @@ static float dark_of(double largest)
 	return (float)(dark < 0x1p-11 ? fmax(dark, 0x1p-31) : 0x1p-11);
 }
 
-/* Hat functions at cells 0, half and 2 half. */
+/*
+ * Hat functions h at cells 0, half and 2 half; 0 past the width. Those at 0 and at 2 half do not meet, so least squares are a
+ * tridiagonal system. Every hat function has a cell of its own as long as width > half (a block of MERL has 18 and 9).
+ */
 struct hats {
 	uint32_t width, half;
-	float value[3][CELLS_MAX];
-	float fit[3][CELLS_MAX]; /* (A^T A)^-1 A^T: the codes for weights that are all alike */
+	float h[3][CELLS_MAX];
+	float product[5][CELLS_MAX]; /* h0 h0, h0 h1, h1 h1, h1 h2, h2 h2 */
+	float fit[3][CELLS_MAX];     /* the codes for weights that are all alike: sums of fit times share */
 };
 
-/* Solves the symmetric positive definite 3 x 3 system for `columns` right-hand sides, which follow in the rows. */
-static void solve(float (*m)[3 + CELLS_MAX], uint32_t columns)
+/* m: the five different elements of the system; x: its right-hand side, then its solution. */
+static void solve(const float m[5], float x[3])
 {
-	for (int a = 0; a < 3; a++) { /* Gauss-Jordan; no pivoting is needed */
-		float pivot = 1 / m[a][a];
-		for (uint32_t b = 0; b < 3 + columns; b++)
-			m[a][b] *= pivot;
-		for (int c = 0; c < 3; c++) {
-			float factor = m[c][a];
-			for (uint32_t b = 0; c != a && b < 3 + columns; b++)
-				m[c][b] -= factor * m[a][b];
-		}
-	}
+	const float up = m[1] / m[0], middle = m[2] - up * m[1], down = m[3] / middle;
+	x[1] -= up * x[0];
+	x[2] = (x[2] - down * x[1]) / (m[4] - down * m[3]);
+	x[1] = (x[1] - m[3] * x[2]) / middle;
+	x[0] = (x[0] - m[1] * x[1]) / m[0];
 }
 
-/*
- * Least squares over cells 0..width: every hat function has a cell of its own as long as width > half
- * (a block of MERL has 18 and 9).
- */
 static void hats_make(uint32_t width, uint32_t half, struct hats *out)
 {
-	float system[3][3 + CELLS_MAX] = {{0}};
+	float system[5] = {0};
 	memset(out, 0, sizeof *out);
 	out->width = width;
 	out->half = half;
 	for (uint32_t k = 0; k <= width; k++) {
 		uint32_t m = k < half ? 0 : 1;
 		float t = (float)(k - m * half) / (float)half;
-		out->value[m][k] = 1 - t;
-		out->value[m + 1][k] = t;
+		out->h[m][k] = 1 - t;
+		out->h[m + 1][k] = t;
 	}
-	for (int a = 0; a < 3; a++) {
-		for (int b = 0; b < 3; b++)
-			for (uint32_t k = 0; k <= width; k++)
-				system[a][b] += out->value[a][k] * out->value[b][k];
-		for (uint32_t k = 0; k <= width; k++)
-			system[a][3 + k] = out->value[a][k];
+	for (int n = 0; n < 5; n++)
+		for (uint32_t k = 0; k <= width; k++) {
+			out->product[n][k] = out->h[n / 2][k] * out->h[(n + 1) / 2][k];
+			system[n] += out->product[n][k];
+		}
+	for (uint32_t k = 0; k <= width; k++) {
+		float x[3] = {out->h[0][k], out->h[1][k], out->h[2][k]};
+		solve(system, x);
+		for (int a = 0; a < 3; a++)
+			out->fit[a][k] = x[a];
 	}
-	solve(system, width + 1);
-	for (int a = 0; a < 3; a++)
-		for (uint32_t k = 0; k <= width; k++)
-			out->fit[a][k] = system[a][3 + k];
 }
 
-static void fit_weighted(const struct hats *hats, const float *share, const float *weight, float codes[3])
+/* The codes of both shares; dark cells count little. */
+static void fit_weighted(const struct hats *hats, const float *const share[2], const float *weight, float *const codes[2])
 {
-	float system[3][3 + CELLS_MAX] = {{0}};
-	for (int a = 0; a < 3; a++) {
-		for (uint32_t k = 0; k <= hats->width; k++) {
-			float w = hats->value[a][k] * weight[k];
-			for (int b = 0; b < 3; b++)
-				system[a][b] += w * hats->value[b][k];
-			system[a][3] += w * share[k];
+	f32x4 system[5] = {{0}}, right[2][3] = {{{0}}};
+	float m[5];
+	for (uint32_t k = 0; k < CELLS_MAX; k += 4) {
+		const f32x4 w = load4(weight + k);
+		for (int n = 0; n < 5; n++)
+			system[n] += w * load4(hats->product[n] + k);
+		for (int c = 0; c < 2; c++) {
+			const f32x4 weighed = w * load4(share[c] + k);
+			for (int a = 0; a < 3; a++)
+				right[c][a] += weighed * load4(hats->h[a] + k);
 		}
-		system[a][a] *= 1.0001f; /* where only dark cells lie under a hat */
 	}
-	solve(system, 1);
-	for (int a = 0; a < 3; a++)
-		codes[a] = system[a][3];
+	for (int n = 0; n < 5; n++)
+		m[n] = sum4(system[n]) * (n % 2 ? 1 : 1.0001f); /* where only dark cells lie under a hat */
+	for (int c = 0; c < 2; c++) {
+		for (int a = 0; a < 3; a++)
+			codes[c][a] = sum4(right[c][a]);
+		solve(m, codes[c]);
+	}
+}
+
+/* The least and the largest of 4 values or more. */
+static inline void range_find(const float *x, uint32_t count, float *least, float *largest)
+{
+	f32x4 low = load4(x), high = low;
+	for (uint32_t k = 4; k < count; k += 4) {
+		const f32x4 v = load4(x + (k + 4 <= count ? k : count - 4));
+		const mask4 below = v < low, above = v > high;
+		low = (f32x4)(((mask4)v & below) | ((mask4)low & ~below));
+		high = (f32x4)(((mask4)v & above) | ((mask4)high & ~above));
+	}
+	const float l0 = low[0] < low[1] ? low[0] : low[1], l1 = low[2] < low[3] ? low[2] : low[3];
+	const float h0 = high[0] > high[1] ? high[0] : high[1], h1 = high[2] > high[3] ? high[2] : high[3];
+	*least = l0 < l1 ? l0 : l1;
+	*largest = h0 > h1 ? h0 : h1;
 }
 
 /* The three codes of a block's shares, within the range of the shares themselves. */
-static void fit_shares(const struct hats *hats, const float *share, const float *weight, float codes[3])
+static void fit_shares(const struct hats *hats, const float *const share[2], const float *weight, float *const codes[2])
 {
 	const float STEEP = 0.02f; /* from this range within a block on, dark cells may mislead the plain fit */
-	float low = share[0], high = share[0];
-	for (uint32_t k = 1; k <= hats->width; k++) {
-		low = share[k] < low ? share[k] : low;
-		high = share[k] > high ? share[k] : high;
-	}
-	if (high - low > STEEP) {
+	float low[2], high[2];
+	for (int c = 0; c < 2; c++)
+		range_find(share[c], hats->width + 1, &low[c], &high[c]);
+	if (high[0] - low[0] > STEEP || high[1] - low[1] > STEEP) {
 		fit_weighted(hats, share, weight, codes);
 	} else {
-		for (int a = 0; a < 3; a++) {
-			codes[a] = 0;
-			for (uint32_t k = 0; k <= hats->width; k++)
-				codes[a] += hats->fit[a][k] * share[k];
+		for (int c = 0; c < 2; c++) {
+			f32x4 sum[3] = {{0}};
+			for (uint32_t k = 0; k < CELLS_MAX; k += 4)
+				for (int a = 0; a < 3; a++)
+					sum[a] += load4(share[c] + k) * load4(hats->fit[a] + k);
+			for (int a = 0; a < 3; a++)
+				codes[c][a] = sum4(sum[a]);
 		}
 	}
-	for (int a = 0; a < 3; a++)
-		codes[a] = codes[a] > low ? (codes[a] < high ? codes[a] : high) : low;
+	for (int c = 0; c < 2; c++)
+		for (int a = 0; a < 3; a++)
+			codes[c][a] = codes[c][a] > low[c] ? (codes[c][a] < high[c] ? codes[c][a] : high[c]) : low[c];
 }
 
 static void row_prepare(const struct expansion *e, size_t row, float factor, float dark, uint32_t padded, int channels,
@@ -140,11 +175,8 @@ static void row_prepare(const struct expansion *e, size_t row, float factor, flo
 
 static void block_roots(const float *root, uint32_t count, uint8_t *block)
 {
-	float low = root[0], high = root[0];
-	for (uint32_t k = 1; k < count; k++) {
-		low = root[k] < low ? root[k] : low;
-		high = root[k] > high ? root[k] : high;
-	}
+	float low, high;
+	range_find(root, count, &low, &high);
 	/* the base rounded down, the step up: their range holds every value */
 	uint16_t base = (uint16_t)(bits_of_float(low) >> COMPACT_HEAD_SHIFT);
 	float from = float_of_bits((uint32_t)base << COMPACT_HEAD_SHIFT);
@@ -152,10 +184,13 @@ static void block_roots(const float *root, uint32_t count, uint8_t *block)
 	float width = float_of_bits((uint32_t)step << COMPACT_HEAD_SHIFT), per = width > 0x1p-120f ? 1 / width : 0;
 	memcpy(block, &base, sizeof base);
 	memcpy(block + 2, &step, sizeof step);
-	for (uint32_t k = 0; k < count; k++) {
+	uint8_t codes[CELLS_MAX];
+	for (int k = 0; k < CELLS_MAX; k++) {
 		float code = (root[k] - from) * per + 0.5f;
-		block[COMPACT_RESIDUALS + k] = (uint8_t)(code < 255 ? (int)code : 255);
+		code = code > 0 ? code : 0; /* past the count, where it means nothing */
+		codes[k] = (uint8_t)(int)(code < 255 ? code : 255);
 	}
+	memcpy(block + COMPACT_RESIDUALS, codes, count);
 }
 
 static uint32_t share_code(float share, float base, float per)
@@ -164,11 +199,10 @@ static uint32_t share_code(float share, float base, float per)
 	return (uint32_t)(code < 0 ? 0 : code > 4095 ? 4095 : (int32_t)code);
 }
 
-/* Block b of the r-th row of phi_d. */
-static uint8_t *block_at(const struct table *t, size_t r, size_t b)
+/* The first block of row (i, j) of phi_d; the next ones are two blocks apart. */
+static uint8_t *row_at(const struct table *t, size_t i, size_t j)
 {
-	size_t i = r / t->dims.theta_d, j = r % t->dims.theta_d;
-	return t->store + i * t->slice + j / 2 * t->row + (2 * b + j % 2) * t->block_bytes;
+	return t->store + i * t->slice + j / 2 * t->row + j % 2 * t->block_bytes;
 }
 
 bp_status compact_fill(struct table *t, const struct expansion *e, float largest, bp_error *error)
@@ -187,15 +221,17 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 
 	const uint32_t padded = blocks * t->width + 1, kept = 3 * blocks;
 	const float factor = table_factor(largest);
-	size_t scratch_bytes = (4 * (size_t)padded + 2 * rows * kept) * sizeof(float);
+	const size_t line = padded + CELLS_MAX; /* a row, and what a block's last vectors read past it */
+	size_t scratch_bytes = (4 * line + 2 * rows * kept) * sizeof(float);
 	float *scratch = malloc(scratch_bytes);
 	t->store = memory_alloc(t->store_bytes);
 	if (!scratch || !t->store) {
 		free(scratch);
 		return error_memory(error, scratch ? t->store_bytes : scratch_bytes);
 	}
-	struct compact_row row = {scratch, {scratch + padded, scratch + 2 * padded}, scratch + 3 * padded};
-	float *knots[2] = {scratch + 4 * padded, scratch + 4 * padded + rows * kept};
+	struct compact_row row = {scratch, {scratch + line, scratch + 2 * line}, scratch + 3 * line};
+	float *knots[2] = {scratch + 4 * line, scratch + 4 * line + rows * kept};
+	memset(scratch, 0, 4 * line * sizeof *scratch);
 	float low[2] = {1, 1}, high[2] = {0, 0};
 	const float dark = dark_of(largest * e->unit);
 	struct hats hats;
@@ -213,18 +249,20 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 		};
 	}
 	for (size_t r = 0; r < rows; r++) {
+		uint8_t *block = row_at(t, r / e->dims.theta_d, r % e->dims.theta_d);
 		row_prepare(e, r, factor, dark, padded, t->channels, &row);
-		for (uint32_t b = 0; b < blocks; b++) {
-			uint8_t *block = block_at(t, r, b);
+		for (uint32_t b = 0; b < blocks; b++, block += 2 * t->block_bytes) {
 			block_roots(row.root + b * t->width, t->width + 1, block);
-			for (int c = 0; c < 2 && t->channels == 3; c++) {
-				float *codes = knots[c] + (r * blocks + b) * 3;
-				fit_shares(&hats, row.share[c] + b * t->width, row.weight + b * t->width, codes);
+			if (t->channels != 3)
+				continue;
+			const float *const share[2] = {row.share[0] + b * t->width, row.share[1] + b * t->width};
+			float *const codes[2] = {knots[0] + (r * blocks + b) * 3, knots[1] + (r * blocks + b) * 3};
+			fit_shares(&hats, share, row.weight + b * t->width, codes);
+			for (int c = 0; c < 2; c++)
 				for (int a = 0; a < 3; a++) {
-					low[c] = codes[a] < low[c] ? codes[a] : low[c];
-					high[c] = codes[a] > high[c] ? codes[a] : high[c];
+					low[c] = codes[c][a] < low[c] ? codes[c][a] : low[c];
+					high[c] = codes[c][a] > high[c] ? codes[c][a] : high[c];
 				}
-			}
 		}
 	}
 	const float step[2] = {(high[0] - low[0]) / 4095, (high[1] - low[1]) / 4095};
@@ -234,12 +272,17 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	t->mix[2] = (f32x4){low[0], 1 - low[0] - low[1], low[1], 0} * unit;
 	if (t->channels == 3) {
 		float per[2] = {high[0] > low[0] ? 4095 / (high[0] - low[0]) : 0, high[1] > low[1] ? 4095 / (high[1] - low[1]) : 0};
-		for (size_t n = 0; n < rows * kept; n++) {
-			uint32_t code = share_code(knots[0][n], low[0], per[0]) | share_code(knots[1][n], low[1], per[1]) << 12;
-			uint8_t *at = block_at(t, n / kept, n % kept / 3) + COMPACT_SHARES + 3 * (n % 3);
-			at[0] = (uint8_t)code;
-			at[1] = (uint8_t)(code >> 8);
-			at[2] = (uint8_t)(code >> 16);
+		const float *knot[2] = {knots[0], knots[1]};
+		for (size_t r = 0; r < rows; r++) {
+			uint8_t *block = row_at(t, r / e->dims.theta_d, r % e->dims.theta_d);
+			for (uint32_t b = 0; b < blocks; b++, block += 2 * t->block_bytes)
+				for (int a = 0; a < 3; a++) {
+					const uint32_t code = share_code(*knot[0]++, low[0], per[0]) | share_code(*knot[1]++, low[1], per[1]) << 12;
+					uint8_t *at = block + COMPACT_SHARES + 3 * a;
+					at[0] = (uint8_t)code;
+					at[1] = (uint8_t)(code >> 8);
+					at[2] = (uint8_t)(code >> 16);
+				}
 		}
 	}
 	free(scratch);
