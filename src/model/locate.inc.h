@@ -104,8 +104,12 @@ static inline struct cell KERNEL(cell_of)(const float top[3], const float inner[
 	return (struct cell){(uint32_t)i, (uint32_t)j, (uint32_t)k, h - (float)i, d - (float)j, p - (float)k};
 }
 
-/* Look-up m of the block after this one, if there is: its four rows are on the way while others are evaluated. */
-static inline void KERNEL(fetch)(const struct table *t, const struct lookups *next, size_t m, size_t unit, bool compact)
+/*
+ * Look-up m of the block after this one, if there is: its four rows are on the way while others are evaluated.
+ * Always inline: gcc takes a function that only prefetches for one without effects, and drops calls of it.
+ */
+__attribute__((always_inline)) static inline void KERNEL(fetch)(const struct table *t, const struct lookups *next, size_t m, size_t unit,
+                                                               bool compact)
 {
 	if (m >= next->count)
 		return;
