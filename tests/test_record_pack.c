@@ -118,6 +118,24 @@ static void a_budget_is_kept_or_the_least_one_is_named(void **state)
 	lattice_free(&lattice);
 }
 
+/* Of the default profile, where there is enough to tell (all there is takes 24,438 bytes): at most 1 % is left over. */
+static void a_budget_is_used_to_the_last_hundredth(void **state)
+{
+	struct lattice lattice;
+	uint8_t *record = NULL;
+	size_t bytes;
+	(void)state;
+	if (tested != PROFILE_DEFAULT)
+		return;
+	lattice_make((struct lattice_dims){ 32, 32, 32 }, 1, &lattice);
+	for (uint32_t budget = 1000; budget < 24000; budget = budget * 13 / 10) {
+		assert_int_equal(pack(&lattice, budget, 0, &record, &bytes, NULL, NULL), BP_OK);
+		assert_true(bytes <= budget && (double)bytes >= 0.99 * (double)budget);
+		free(record);
+	}
+	lattice_free(&lattice);
+}
+
 static void an_error_can_be_asked_for_instead(void **state)
 {
 	struct lattice lattice;
@@ -240,6 +258,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(the_recorded_error_of_every_layer_is_the_measured_one),
 		cmocka_unit_test(packing_twice_gives_the_same_bytes),
 		cmocka_unit_test(a_budget_is_kept_or_the_least_one_is_named),
+		cmocka_unit_test(a_budget_is_used_to_the_last_hundredth),
 		cmocka_unit_test(an_error_can_be_asked_for_instead),
 		cmocka_unit_test(sizes_of_all_orders_pack_and_come_back_finite),
 		cmocka_unit_test(an_illegal_name_is_refused),

@@ -57,6 +57,7 @@ struct encoding {
 	struct byte_buffer stream[LAYERS_MAX];
 	uint32_t end[LAYERS_MAX];
 	struct rate rate;
+	uint64_t bytes;  /* of the record */
 	double wanted;   /* record bytes but for the head that all units would have taken */
 	double foreseen; /* the same as foreseen before the lowest plane; 0 where it was not */
 	double bias;     /* what was wanted for each byte foreseen in the last attempt that was complete; 1 before */
@@ -132,6 +133,7 @@ static bp_status encode_once(struct encoding *e, const struct search *search, in
 		store_u32(out->bytes, e->end[l]);
 		bytes += out->count;
 	}
+	e->bytes = bytes;
 	return BP_OK;
 }
 
@@ -141,24 +143,30 @@ static bp_status step_search(struct encoding *e, struct lattice_dims d, int effo
 	const struct search search = search_for(effort);
 	const double room = (double)e->limit[e->layers - 1] - (double)e->head_bytes, rounding = (double)ROUNDING;
 	double per_bit = e->model->noisy ? 1.3 : 1.03; /* bits by the coder for each that rate_bits tells */
-	float fitting = 0;
-	int complete;
+	float fitting = 0; /* the step that filled the record best */
+	uint64_t most = 0;
+	int complete = 0;
 	bp_status status;
 
 	rate_measure(e->model, d, &e->rate);
 	const float least = fmaxf(e->rate.largest * 0x1p-23f, 0x1p-22f); /* finer than the rounding of float in the fields */
 	for (int attempt = 0; attempt < search.attempts; attempt++) {
-		e->step = (float)rate_step(&e->rate, search.aim * room * 8 / per_bit, rounding, (double)least);
+		/* A record whose last unit left a gap is filled by a slightly finer step; the gaps of small records are wide. */
+		const double finer = complete && fitting == e->step && attempt > 0 ? 1 + 0.004 * attempt : 1;
+		e->step = (float)rate_step(&e->rate, finer * search.aim * room * 8 / per_bit, rounding, (double)least);
 		status = encode_once(e, attempt + 1 < search.attempts ? &search : NULL, &complete, error);
 		if (status)
 			return status;
 		const double ratio = e->wanted / room;
-		if (complete && ((ratio >= search.low && ratio <= search.high) || (ratio < 1 && e->step <= least)))
+		const int full = complete && (double)e->bytes >= 0.991 * (double)e->limit[e->layers - 1];
+		if (complete && ((full && ratio >= search.low && ratio <= search.high) || (ratio < 1 && e->step <= least)))
 			return BP_OK;
 		if (complete && e->foreseen > 0)
 			e->bias = e->wanted / e->foreseen;
-		if (complete && ratio >= search.low && (fitting == 0 || e->step > fitting))
-			fitting = e->step; /* the coarsest step that fills the record */
+		if (complete && ratio >= search.low && e->bytes > most) {
+			fitting = e->step;
+			most = e->bytes;
+		}
 		const double told = rate_bits(&e->rate, (double)e->step, rounding, 0);
 		per_bit = fmin(fmax(told > 0 ? e->wanted * 8 / told : per_bit, 0.1), 10);
 	}
