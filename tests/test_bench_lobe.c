@@ -243,8 +243,10 @@ static void a_black_table_gives_a_black_model(void **state)
 	(void)state;
 
 	assert_int_equal(lattice_alloc(SMALL, &lattice, NULL), BP_OK);
-	for (size_t cell = 0; cell < lattice_cells(SMALL); cell++)
+	for (size_t cell = 0; cell < lattice_cells(SMALL); cell++) {
+		lattice.rgb[0][cell] = lattice.rgb[1][cell] = lattice.rgb[2][cell] = 0;
 		lattice.valid[cell] = 1;
+	}
 	assert_int_equal(lobe_fit(&LOBE_COOK_TORRANCE, &lattice, &fitted, NULL), BP_OK);
 	found = fitted;
 	for (int c = 0; c < 3; c++)

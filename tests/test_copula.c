@@ -193,6 +193,8 @@ static void a_lattice_of_zeros_has_mean_zero_and_nothing_defined(void **user)
 	double value[16];
 	uint8_t defined[16];
 	assert_int_equal(lattice_alloc((struct lattice_dims){4, 4, 4}, &l, NULL), BP_OK);
+	for (int c = 0; c < 3; c++)
+		memset(l.rgb[c], 0, 64 * sizeof(double));
 	lattice_validate(&l);
 	assert_int_equal(density_build(&l, &density, NULL), BP_OK);
 	assert_true(density.mean == 0);

@@ -27,13 +27,13 @@ size_t lattice_cells(struct lattice_dims dims)
 	return (size_t)dims.theta_h * dims.theta_d * dims.phi_d;
 }
 
-/* Three planes of `plane_bytes` and `extra` bytes, zeroed, in one block; planes[3] is where the extra bytes start. */
+/* Three planes of `plane_bytes` and `extra` bytes in one block; planes[3] is where the extra bytes start. */
 static bp_status planes_alloc(size_t plane_bytes, size_t extra, void **block, unsigned char *planes[4], bp_error *error)
 {
 	const size_t stride = (plane_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 	const size_t bytes = 3 * stride + extra + ALIGNMENT;
-	/* calloc, not aligned_alloc and memset: fresh pages of the system are zero already */
-	*block = calloc(bytes, 1);
+	/* Not aligned_alloc: a worker's heap, which is kept from material to material, would fill with gaps. */
+	*block = malloc(bytes);
 	if (!*block)
 		return error_memory(error, bytes);
 	memory_prefer_huge(*block, bytes);
@@ -65,6 +65,7 @@ bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error 
 	for (int c = 0; c < 3; c++)
 		lattice.rgb[c] = (double *)(void *)planes[c];
 	lattice.valid = planes[3];
+	memset(lattice.valid, 0, cells);
 	*out = lattice;
 	return BP_OK;
 }

@@ -62,7 +62,7 @@ static inline size_t lattice_index(struct lattice_dims dims, uint32_t i, uint32_
 	return k + (size_t)dims.phi_d * (j + (size_t)dims.theta_d * i);
 }
 
-/* All planes zero, nothing valid. */
+/* Nothing valid, the planes not set: whoever allocates fills all of them. */
 bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error);
 void lattice_free(struct lattice *lattice); /* NULL and a zeroed struct are allowed */
 
@@ -120,6 +120,7 @@ struct expansion {
 	float *rgb[3];
 	void *block;
 };
+/* The planes are not set. */
 bp_status expansion_alloc(struct lattice_dims dims, struct expansion *out, bp_error *error);
 void expansion_free(struct expansion *expansion);
 
