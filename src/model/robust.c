@@ -20,6 +20,8 @@ static void design_free(struct design *design)
 	free(design->x);
 	free(design->excess);
 	free(design->inside);
+	free(design->picked);
+	free(design->picked_excess);
 	robust_anchor_free(&design->anchor);
 }
 
@@ -28,8 +30,10 @@ static bp_status design_alloc(size_t n, struct design *design, bp_error *error)
 	*design = (struct design){.n = n};
 	design->x = malloc(n * sizeof *design->x);
 	design->excess = malloc(n * sizeof *design->excess);
-	design->inside = malloc((n < ROBUST_PICKS ? ROBUST_PICKS : n + 1) * sizeof *design->inside);
-	if (!design->x || !design->excess || !design->inside)
+	design->inside = malloc((n + 1) * sizeof *design->inside);
+	design->picked = malloc((2 * robust_picks(n) + 1) * sizeof *design->picked);
+	design->picked_excess = malloc((robust_picks(n) + 1) * sizeof *design->picked_excess);
+	if (!design->x || !design->excess || !design->inside || !design->picked || !design->picked_excess)
 		return error_memory(error, n * (2 * sizeof(double) + sizeof(float)));
 	/* Few observations are read through as quickly as an anchor is placed. */
 	return n < ANCHOR_WORTH ? BP_OK : robust_anchor_alloc(n / 6, &design->anchor, error);

@@ -1,9 +1,9 @@
 /*
  * robust_anchor.h: an iteration of robust.h without reading all observations.
  *
- * From some iteration on the line creeps: steps become small against the scale, often for dozens of
- * iterations. One pass at an *anchor* line (centre_x, c0, b0) then serves many of them. While the line and the
- * scale stay within a *reach* of the anchor,
+ * Soon the line creeps: steps become small against the scale, often for dozens of iterations. One pass at an
+ * *anchor* line (centre_x, c0, b0), which takes as long as two or three iterations, then serves many of them. While the
+ * line and the scale stay within a *reach* of the anchor,
  *
  * - an observation whose residual keeps its side of the median need only be counted;
  * - one that stays outside, |u| >= 1, has weight 0;

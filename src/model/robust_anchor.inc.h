@@ -1,6 +1,6 @@
 /* robust_anchor.inc.h: the one pass of robust_anchor.h over all observations. See kernels.h. */
 
-enum { ANCHOR_BLOCK = 256 };
+enum { ANCHOR_BLOCK = 256, ANCHOR_GROUP = 16 };
 
 /* The observations of one block about the line: dx, residual, 1 + excess; kept = 1 where surely inside, else 0. */
 struct KERNEL(anchor_block) {
@@ -46,20 +46,43 @@ ANCHOR_SWEEP(anchor_fourth_middle, 2, 5, 4, 0)
 ANCHOR_SWEEP(anchor_fourth_high, 4, 3, 2, 1)
 #undef ANCHOR_SWEEP
 
+/* Copies the observations of one group that are flagged to the list, which has room. */
+static inline void KERNEL(anchor_copy)(struct anchor_list *list, const double *x, const double *y, const float *excess,
+                                       const int64_t *flag)
+{
+	size_t count = list->count;
+	for (size_t i = 0; i < ANCHOR_GROUP; i++) {
+		list->x[count] = x[i];
+		list->y[count] = y[i];
+		list->excess[count] = excess[i];
+		count += (size_t)(flag[i] & 1);
+	}
+	list->count = count;
+}
+
+/* Adds a block's sums to the totals, whose rounding errors gather in rest (Knuth's two-sum: no branch). */
+static inline void KERNEL(anchor_add)(const double *sum, double *restrict total, double *restrict rest)
+{
+	for (size_t i = 0; i < (size_t)3 * ANCHOR_R * ANCHOR_T; i++) {
+		const double before = total[i], after = before + sum[i], added = after - before;
+		rest[i] += (before - (after - added)) + (sum[i] - added);
+		total[i] = after;
+	}
+}
+
 static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const struct robust_line *line, const struct anchor_reach *reach,
                                   struct anchor_sums *out)
 {
 	struct KERNEL(anchor_block) b;
-	double l4[ANCHOR_BLOCK], near[ANCHOR_BLOCK], edge[ANCHOR_BLOCK];
+	double l4[ANCHOR_BLOCK];
 	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), s = LANES_ALL(line->slope), one = LANES_ALL(1);
 	const lanes4 reach_y = LANES_ALL(reach->centre_y), reach_slope = LANES_ALL(reach->slope);
 	const lanes4 low = LANES_ALL(reach->median_low), high = LANES_ALL(reach->median_high);
-	const lanes4 inner = LANES_ALL(reach->limit_low), outer = LANES_ALL(reach->limit_high), zero = LANES_ALL(0);
+	const lanes4 inner = LANES_ALL(reach->limit_low), outer = LANES_ALL(reach->limit_high);
 	const mask4 sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
-	double rest[3][ANCHOR_R][ANCHOR_T] = {{{0}}};
+	double sum[3][ANCHOR_R][ANCHOR_T], total[3][ANCHOR_R][ANCHOR_T] = {{{0}}}, rest[3][ANCHOR_R][ANCHOR_T] = {{{0}}};
 	struct anchor_list *const near_list = out->near, *const edge_list = out->edge;
 	mask4 below = {0, 0, 0, 0}, outside = {0, 0, 0, 0};
-	size_t near_count = 0, edge_count = 0;
 
 	*out = (struct anchor_sums){.near = near_list, .edge = edge_list};
 	near_list->count = edge_list->count = 0;
@@ -70,7 +93,9 @@ static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const stru
 		double padded[2][ANCHOR_BLOCK];
 		float padded_excess[ANCHOR_BLOCK];
 
-		if (m < ANCHOR_BLOCK) { /* the last block: filled up with copies that are told apart below */
+		if (near_list->count + ANCHOR_BLOCK > near_list->capacity || edge_list->count + ANCHOR_BLOCK > edge_list->capacity)
+			return false;
+		if (m < ANCHOR_BLOCK) { /* the last block: filled up with copies, which count for nothing below */
 			for (size_t i = 0; i < ANCHOR_BLOCK; i++) {
 				const size_t from = i < m ? i : m - 1;
 				padded[0][i] = x[from];
@@ -81,68 +106,58 @@ static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const stru
 			y = padded[1];
 			excess = padded_excess;
 		}
-		lanes4 any_near = zero, any_edge = zero;
-		for (size_t i = 0; i < ANCHOR_BLOCK; i += 4) {
-			const mask4 present = {i < m ? -1 : 0, i + 1 < m ? -1 : 0, i + 2 < m ? -1 : 0, i + 3 < m ? -1 : 0};
-			const lanes4 t = LANES_LOAD(x + i) - xo, r = (LANES_LOAD(y + i) - c) - s * t;
-			const lanes4 l = one + __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
-			const lanes4 v = (lanes4)((mask4)r & sign) * l;
-			const lanes4 q = (reach_y + reach_slope * (lanes4)((mask4)t & sign)) * l;
-			const lanes4 most = v + q, least = v - q;
-			const mask4 in = (mask4)(most < inner) & present, out_of = (mask4)(least > outer) & present;
-			const mask4 under = (mask4)(most < low) & present, over = (mask4)(least > high);
-			const lanes4 is_near = (lanes4)(~under & ~over & present & (mask4)one);
-			const lanes4 is_edge = (lanes4)(~in & ~out_of & present & (mask4)one);
-			const lanes4 kept = (lanes4)(in & (mask4)one), l2 = kept * l * l;
+		for (size_t group = 0; group < ANCHOR_BLOCK; group += ANCHOR_GROUP) {
+			int64_t near[ANCHOR_GROUP], edge[ANCHOR_GROUP];
+			mask4 listed = {0, 0, 0, 0};
+			for (size_t g = 0; g < ANCHOR_GROUP; g += 4) {
+				const size_t i = group + g;
+				const lanes4 t = LANES_LOAD(x + i) - xo, r = (LANES_LOAD(y + i) - c) - s * t;
+				const lanes4 l = one + __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
+				const lanes4 v = (lanes4)((mask4)r & sign) * l;
+				const lanes4 q = (reach_y + reach_slope * (lanes4)((mask4)t & sign)) * l;
+				const lanes4 most = v + q, least = v - q;
+				mask4 in = (mask4)(most < inner), out_of = (mask4)(least > outer);
+				mask4 under = (mask4)(most < low), near4 = ~(under | (mask4)(least > high)), edge4 = ~(in | out_of);
+				if (m < ANCHOR_BLOCK) {
+					const mask4 present = {i < m ? -1 : 0, i + 1 < m ? -1 : 0, i + 2 < m ? -1 : 0, i + 3 < m ? -1 : 0};
+					in &= present;
+					out_of &= present;
+					under &= present;
+					near4 &= present;
+					edge4 &= present;
+				}
+				const lanes4 kept = (lanes4)(in & (mask4)one), l2 = kept * (l * l);
 
-			LANES_STORE(b.t + i, t);
-			LANES_STORE(b.r + i, r);
-			LANES_STORE(b.kept + i, kept);
-			LANES_STORE(b.l2 + i, l2);
-			LANES_STORE(l4 + i, l2 * l * l);
-			LANES_STORE(near + i, is_near);
-			LANES_STORE(edge + i, is_edge);
-			any_near += is_near;
-			any_edge += is_edge;
-			below += under; /* true is -1 */
-			outside += out_of;
+				LANES_STORE(b.t + i, t);
+				LANES_STORE(b.r + i, r);
+				LANES_STORE(b.kept + i, kept);
+				LANES_STORE(b.l2 + i, l2);
+				LANES_STORE(l4 + i, l2 * l2);
+				memcpy(near + g, &near4, sizeof near4);
+				memcpy(edge + g, &edge4, sizeof edge4);
+				listed |= near4 | edge4;
+				below += under; /* true is -1 */
+				outside += out_of;
+			}
+			if (listed[0] | listed[1] | listed[2] | listed[3]) {
+				KERNEL(anchor_copy)(near_list, x + group, y + group, excess + group, near);
+				KERNEL(anchor_copy)(edge_list, x + group, y + group, excess + group, edge);
+			}
 		}
-		if (near_count + ANCHOR_BLOCK > near_list->capacity || edge_count + ANCHOR_BLOCK > edge_list->capacity)
-			return false;
-		if (lanes_sum(&any_near) > 0)
-			for (size_t i = 0; i < m; i++) {
-				near_list->x[near_count] = x[i];
-				near_list->y[near_count] = y[i];
-				near_list->excess[near_count] = excess[i];
-				near_count += near[i] > 0;
-			}
-		if (lanes_sum(&any_edge) > 0)
-			for (size_t i = 0; i < m; i++) {
-				edge_list->x[edge_count] = x[i];
-				edge_list->y[edge_count] = y[i];
-				edge_list->excess[edge_count] = excess[i];
-				edge_count += edge[i] > 0;
-			}
-		double sum[3][ANCHOR_R][ANCHOR_T] = {{{0}}};
+		memset(sum, 0, sizeof sum);
 		KERNEL(anchor_plain)(&b, b.kept, sum[0]);
 		KERNEL(anchor_square_low)(&b, b.l2, sum[1]);
 		KERNEL(anchor_square_high)(&b, b.l2, sum[1]);
 		KERNEL(anchor_fourth_low)(&b, l4, sum[2]);
 		KERNEL(anchor_fourth_middle)(&b, l4, sum[2]);
 		KERNEL(anchor_fourth_high)(&b, l4, sum[2]);
-		for (int k = 0; k < 3; k++)
-			for (int p = 0; p < ANCHOR_R; p++)
-				for (int i = 0; i < ANCHOR_T; i++)
-					if (sum[k][p][i] != 0)
-						KERNEL(add)(&out->moment[k][p][i], &rest[k][p][i], sum[k][p][i]);
+		KERNEL(anchor_add)((const double *)sum, (double *)total, (double *)rest);
 	}
 	for (int k = 0; k < 3; k++)
 		for (int p = 0; p < ANCHOR_R; p++)
 			for (int i = 0; i < ANCHOR_T; i++)
-				out->moment[k][p][i] += rest[k][p][i];
+				out->moment[k][p][i] = total[k][p][i] + rest[k][p][i];
 	out->below = (size_t)-(below[0] + below[1] + below[2] + below[3]);
 	out->outside = (size_t)-(outside[0] + outside[1] + outside[2] + outside[3]);
-	near_list->count = near_count;
-	edge_list->count = edge_count;
 	return true;
 }

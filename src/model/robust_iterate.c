@@ -2,34 +2,40 @@
 
 #include "robust_walk.h"
 
+/* Copies the picks: where they stand, every one would be a cache miss each time. */
+static struct robust_sample picks_copy(struct design *design, const double *y)
+{
+	const size_t count = robust_picks(design->n);
+	double *picked_x = design->picked, *picked_y = design->picked + count;
+
+	for (size_t k = 0; k < count; k++) {
+		const size_t i = k * design->n / count;
+		picked_x[k] = design->x[i];
+		picked_y[k] = y[i];
+		design->picked_excess[k] = design->excess[i];
+	}
+	return (struct robust_sample){picked_x, picked_y, design->picked_excess, count};
+}
+
 void robust_iterate(struct design *design, const double *y, struct robust_fit *out)
 {
-	enum { ANCHOR_FROM = 6 };
 	struct walk walk = {
 		.kernels = kernels_get(),
 		.sample = {design->x, y, design->excess, design->n},
+		.picks = picks_copy(design, y),
 		.inside = design->inside,
 		.line = {design->mean_x, y[0], 0},
 		.anchor = design->anchor.near.capacity ? &design->anchor : NULL,
-		.horizon = 8,
-		.plain_until = ANCHOR_FROM,
 	};
-	struct robust_line before = walk.line;
 
 	walk_start(&walk);
 	design->anchor.placed = false;
 	out->converged = false;
 	out->iterations = 0;
 	while (!out->converged && out->iterations < ROBUST_ITERATIONS_MAX) {
-		const struct robust_line from = walk.line;
-
-		if (walk.anchor && !walk.anchor->placed && out->iterations >= walk.plain_until)
-			walk_anchor(&walk, &before, out->iterations);
-		walk_step(&walk);
 		out->iterations++;
-		before = from;
-
-		out->converged = line_settled(&from, &walk.line);
+		walk_step(&walk, ROBUST_ITERATIONS_MAX - out->iterations);
+		out->converged = line_settled(&walk.before, &walk.line);
 	}
 	out->rejected = walk.sums.rejected;
 	out->slope = walk.line.slope;

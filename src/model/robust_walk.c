@@ -21,40 +21,42 @@ static double select_middle(double *v, size_t n, size_t k, size_t k2)
 	return 0.5 * (a + b);
 }
 
-/* A guess at where the median lies, from ROBUST_PICKS evenly spread observations: four standard errors of rank wide, 2.5 % of them. */
-static void guess_bracket(const struct robust_sample *sample, const struct robust_line *line, double *scratch, double *low, double *high)
+/* A guess at where the median lies, from the picks: four standard errors of rank wide; scratch holds one value of each. */
+static void guess_bracket(const struct robust_sample *picks, const struct robust_line *line, double *scratch, double *low, double *high)
 {
-	enum { PICKS = ROBUST_PICKS, MARGIN = 100 };
-	if (sample->n < 4 * PICKS) {
+	if (!picks->n) {
 		*low = 0;
 		*high = DBL_MAX;
 		return;
 	}
-	for (size_t k = 0; k < PICKS; k++) {
-		size_t i = (size_t)((double)k * ((double)sample->n / PICKS));
-		double r = (sample->y[i] - line->centre_y) - line->slope * (sample->x[i] - line->centre_x);
-		scratch[k] = fabs(r + r * (double)sample->excess[i]);
+	const size_t margin = (size_t)(1.1 * sqrt((double)picks->n)), first = picks->n / 2 - margin;
+	for (size_t k = 0; k < picks->n; k++) {
+		double r = (picks->y[k] - line->centre_y) - line->slope * (picks->x[k] - line->centre_x);
+		scratch[k] = fabs(r + r * (double)picks->excess[k]);
 	}
-	*low = select_kth(scratch, PICKS, PICKS / 2 - MARGIN);
-	*high = select_kth(scratch, PICKS, PICKS / 2 + MARGIN);
+	*low = select_kth(scratch, picks->n, first);
+	*high = select_kth(scratch + first, picks->n - first, 2 * margin); /* nothing smaller is behind first */
 }
 
 /*
- * The median of |v| over n observations without the smallest: the n - 1 larger values have their middle at ranks
- * 1 + (n-2)/2 and 1 + (n-1)/2 of all. `sample` holds those that are not known to lie below it, `below` of them do.
+ * The median of |v| over all n observations without the smallest: the n - 1 larger values have their middle at ranks
+ * 1 + (n-2)/2 and 1 + (n-1)/2 of all. `sample` holds those that are not known to lie below it, `below` of them do. What was
+ * expected is used where it is known to `widest`; walk->next becomes what to expect next time.
  */
-static double residual_median(const struct kernels *kernels, const struct robust_sample *sample, const struct robust_line *line,
-                              size_t n, size_t below, double *inside, struct expectation *next)
+static double residual_median(struct walk *walk, const struct robust_sample *sample, const struct robust_line *line, size_t below,
+                              double widest)
 {
-	const size_t k = 1 + (n - 2) / 2 - below, k2 = 1 + (n - 1) / 2 - below;
-	double low, high, median;
+	const struct kernels *kernels = walk->kernels;
+	struct expectation *next = &walk->next;
+	const size_t n = walk->sample.n, k = 1 + (n - 2) / 2 - below, k2 = 1 + (n - 1) / 2 - below;
+	double low, high, median, *inside = walk->inside;
 	size_t less, count;
 
-	if (next->spread > 0 && next->spread < 0.02) {
+	if (next->spread > 0 && next->spread < widest) {
 		low = next->median * (1 - next->spread);
 		high = next->median * (1 + next->spread);
 	} else {
-		guess_bracket(sample, line, inside, &low, &high);
+		guess_bracket(&walk->picks, line, inside, &low, &high);
 	}
 	count = kernels->robust_scale(sample, line, low, high, inside, &less);
 	if (k < less || k2 >= less + count) { /* missed: the same again over the side where it must be */
@@ -127,11 +129,16 @@ void walk_start(struct walk *walk)
 	kernels->robust_sums(&walk->sample, &walk->line, 0, &walk->sums);
 	walk->line.centre_y += walk->sums.wr / n;
 	for (size_t start = 0; start < walk->sample.n; start += 512) {
-		double part = 0;
-		for (size_t i = start; i < walk->sample.n && i < start + 512; i++)
-			part += (y[i] - walk->line.centre_y) * (y[i] - walk->line.centre_y);
-		double t = syy + part;
-		rest += syy - t + part;
+		const size_t end = start + 512 < walk->sample.n ? start + 512 : walk->sample.n;
+		double part[4] = {0}; /* each addition waits for the one before */
+		size_t i = start;
+		for (; i + 4 <= end; i += 4)
+			for (size_t l = 0; l < 4; l++)
+				part[l] += (y[i + l] - walk->line.centre_y) * (y[i + l] - walk->line.centre_y);
+		for (; i < end; i++)
+			part[0] += (y[i] - walk->line.centre_y) * (y[i] - walk->line.centre_y);
+		const double sum = (part[0] + part[1]) + (part[2] + part[3]), t = syy + sum;
+		rest += syy - t + sum;
 		syy = t;
 	}
 	walk->sigma_least = 1e-6 * sqrt((syy + rest) / (n - 1));
@@ -141,14 +148,19 @@ void walk_start(struct walk *walk)
 	line_step(&walk->sums, &walk->line);
 }
 
+static double limit_of(const struct walk *walk, double median)
+{
+	return TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least);
+}
+
 /* One iteration over all observations. */
 static void step_plain(struct walk *walk)
 {
-	const double median =
-		residual_median(walk->kernels, &walk->sample, &walk->line, walk->sample.n, 0, walk->inside, &walk->next);
+	/* Few values lie within 2 % of the median; of a small sample, more may be gathered for what a guess would cost. */
+	const double widest = fmin(fmax(ROBUST_PICKS_MAX / (double)walk->sample.n, 0.02), 0.25);
+	const double median = residual_median(walk, &walk->sample, &walk->line, 0, widest);
 
-	walk->kernels->robust_sums(&walk->sample, &walk->line, 1 / (TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least)),
-	                           &walk->sums);
+	walk->kernels->robust_sums(&walk->sample, &walk->line, 1 / limit_of(walk, median), &walk->sums);
 	line_step(&walk->sums, &walk->line);
 }
 
@@ -158,62 +170,108 @@ static bool step_anchored(struct walk *walk)
 	const struct robust_anchor *anchor = walk->anchor;
 	const struct robust_sample near = {anchor->near.x, anchor->near.y, anchor->near.excess, anchor->near.count};
 	const size_t n = walk->sample.n, below = anchor->sums.below;
+	const struct expectation expected = walk->next;
 	struct robust_line line = walk->line;
-	struct expectation next = walk->next;
 
 	/* The ranks of residual_median must lie in the list. */
 	if (!robust_anchor_reaches(anchor, &line) || 1 + (n - 2) / 2 < below || 1 + (n - 1) / 2 >= below + near.n)
 		return false;
-	next.spread = fmax(next.spread, 1e-4); /* a guess from evenly spread picks knows nothing of this list */
-	if (next.spread >= 0.02)
-		return false;
-	const double median = residual_median(walk->kernels, &near, &line, n, below, walk->inside, &next);
-	const double limit = TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least);
+	walk->next.spread = fmin(fmax(expected.spread, 1e-4), 0.25); /* a guess from the picks knows nothing of this list */
+	const double median = residual_median(walk, &near, &line, below, 1);
+	const double limit = limit_of(walk, median);
 	if (median < anchor->reach.median_low || median > anchor->reach.median_high || limit < anchor->reach.limit_low ||
-	    limit > anchor->reach.limit_high)
+	    limit > anchor->reach.limit_high) {
+		walk->next = expected;
 		return false;
+	}
 	robust_anchor_sums(anchor, &line, limit, &walk->sums);
 	line_step(&walk->sums, &line);
 	walk->line = line;
-	walk->next = next;
 	return true;
 }
 
-bool walk_anchor(struct walk *walk, const struct robust_line *before, uint32_t iteration)
+/* ---- anchors ---- */
+
+/* What the last step moved: the next ones are expected to move less. */
+struct stride {
+	double centre_y, slope, spread;
+};
+
+/* How far the median may change in so many steps, relative. */
+static double sway_of(double spread, double steps)
 {
-	const double drop = before->centre_y + before->slope * (walk->line.centre_x - before->centre_x);
-	const double steps = walk->horizon, median = walk->next.median, sway = fmin(0.25, fmax(steps * walk->next.spread, 1e-4));
-	const double limit = TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least);
+	return fmin(0.25, fmax(steps * spread, 1e-4));
+}
+
+static const double HORIZONS[] = {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
+enum { HORIZON_COUNT = sizeof HORIZONS / sizeof *HORIZONS };
+
+/*
+ * The number of steps an anchor should be meant for, so that its pass and the reading of its lists cost least per step; 0
+ * where plain steps cost less. The lists grow with the number; how fast is learnt from every fourth of the picks.
+ * Units: a plain step, of which median and sums are half each.
+ */
+static double horizon_choose(const struct walk *walk, const struct stride *stride, uint32_t left)
+{
+	static const double PLACING = 2.5;
+	const struct robust_sample *picks = &walk->picks;
+	const double median = walk->next.median, limit = limit_of(walk, median), looked_at = (double)(picks->n / 4);
+	const double room = 0.9 * (double)walk->anchor->near.capacity / (double)walk->sample.n * looked_at;
+	uint32_t near[HORIZON_COUNT] = {0}, edge[HORIZON_COUNT] = {0};
+	double best = 0.9, chosen = 0;
+
+	for (size_t k = 0; k < picks->n; k += 4) {
+		const double t = picks->x[k] - walk->line.centre_x, l = 1 + (double)picks->excess[k];
+		const double v = fabs((picks->y[k] - walk->line.centre_y) - walk->line.slope * t) * l;
+		const double step = (stride->centre_y + stride->slope * fabs(t)) * l;
+		for (int h = 0; h < HORIZON_COUNT; h++) {
+			const double sway = sway_of(stride->spread, HORIZONS[h]), reach = HORIZONS[h] * step;
+			near[h] += fabs(v - median) <= reach + sway * median;
+			edge[h] += fabs(v - limit) <= reach + sway * limit;
+		}
+	}
+	for (int h = 0; h < HORIZON_COUNT; h++) {
+		const double lists = 0.5 * (near[h] + edge[h]) / looked_at, steps = fmin(HORIZONS[h], left + 1);
+		if (PLACING / steps + lists < best && near[h] < room && edge[h] < room) {
+			best = PLACING / steps + lists;
+			chosen = HORIZONS[h];
+		}
+	}
+	return chosen;
+}
+
+/* Places an anchor where the walk stands for the steps to come; false where that is not worth it. */
+static bool anchor_here(struct walk *walk, uint32_t left)
+{
+	const struct robust_line *line = &walk->line, *before = &walk->before;
+	const double drop = before->centre_y + before->slope * (line->centre_x - before->centre_x);
+	const struct stride stride = {fabs(line->centre_y - drop), fabs(line->slope - before->slope), walk->next.spread};
+
+	walk->anchor->placed = false;
+	if (!(stride.spread > 0)) /* the first steps */
+		return false;
+	const double steps = horizon_choose(walk, &stride, left), median = walk->next.median, limit = limit_of(walk, median);
+	const double sway = sway_of(stride.spread, steps);
 	const struct anchor_reach reach = {
-		.centre_y = steps * fabs(walk->line.centre_y - drop),
-		.slope = steps * fabs(walk->line.slope - before->slope),
+		.centre_y = steps * stride.centre_y,
+		.slope = steps * stride.slope,
 		.median_low = median * (1 - sway),
 		.median_high = median * (1 + sway),
 		.limit_low = limit * (1 - sway),
 		.limit_high = limit * (1 + sway),
 	};
-
-	if (robust_anchor_place(walk->anchor, &walk->sample, &walk->line, &reach)) {
-		/* Short lists serve more steps for little more each. */
-		if (20 * (walk->anchor->near.count + walk->anchor->edge.count) < walk->sample.n)
-			walk->horizon *= 2;
-		return true;
-	}
-	walk->horizon *= 0.5;
-	if (walk->horizon < 4) { /* still striding: an anchor would cost more than it saves */
-		walk->horizon = 8;
-		walk->plain_until = iteration + 6;
-	}
-	return false;
+	return steps > 0 && robust_anchor_place(walk->anchor, &walk->sample, line, &reach);
 }
 
-void walk_step(struct walk *walk)
+void walk_step(struct walk *walk, uint32_t left)
 {
-	if (walk->anchor && walk->anchor->placed && step_anchored(walk))
-		return;
-	if (walk->anchor)
-		walk->anchor->placed = false;
-	step_plain(walk);
+	const struct robust_line from = walk->line;
+
+	if (!walk->anchor)
+		step_plain(walk);
+	else if (!(walk->anchor->placed && step_anchored(walk)) && !(anchor_here(walk, left) && step_anchored(walk)))
+		step_plain(walk);
+	walk->before = from;
 }
 
 /* |a - b| <= tolerance max(|a|, |b|) */

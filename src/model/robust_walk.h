@@ -6,7 +6,15 @@
 
 #include "robust_anchor.h"
 
-enum { ROBUST_PICKS = 8192 };
+/*
+ * Some of n observations, evenly spread, tell where to look for the rest: the more of them, the narrower the bracket around
+ * the median; 0 of a few. PICKS_MAX is the largest number.
+ */
+enum { ROBUST_PICKS_MAX = 8192 };
+static inline size_t robust_picks(size_t n)
+{
+	return n >= 1 << 19 ? ROBUST_PICKS_MAX : n >= ROBUST_PICKS_MAX ? ROBUST_PICKS_MAX / 4 : 0;
+}
 
 /* What one iteration expects of the next. */
 struct expectation {
@@ -16,23 +24,23 @@ struct expectation {
 /* One regression under way. */
 struct walk {
 	const struct kernels *kernels;
-	struct robust_sample sample;
-	double *inside;           /* max(n + 1, ROBUST_PICKS): values gathered around the median */
+	struct robust_sample sample, picks;
+	double *inside;           /* n + 1: values gathered around the median */
 	double sigma_least;
 	struct robust_line line;  /* where it stands */
 	struct expectation next;
 	struct robust_sums sums;  /* of the last step */
+	struct robust_line before; /* and where it stood one step ago */
 	struct robust_anchor *anchor; /* NULL where there is none */
-	double horizon;           /* steps that the next anchor is meant to serve */
-	uint32_t plain_until;     /* no anchor before this iteration */
 };
 
 /* Ordinary least squares from line = {mean of x, any y, 0}. */
 void walk_start(struct walk *walk);
-/* One iteration of the procedure: from the anchor where it reaches, else over all observations. */
-void walk_step(struct walk *walk);
-/* Places an anchor where the walk stands for the steps to come, `before` being where it stood one step ago. */
-bool walk_anchor(struct walk *walk, const struct robust_line *before, uint32_t iteration);
+/*
+ * One iteration of the procedure: from an anchor where that costs less than reading all observations. At most `left` more
+ * will follow.
+ */
+void walk_step(struct walk *walk, uint32_t left);
 
 static inline double line_intercept(const struct robust_line *line)
 {
