@@ -1,7 +1,8 @@
 #!/bin/sh
 # bench_table.sh TABLE.tsv [BUDGET]: the README's table, as Markdown: one row per method at BUDGET bytes (60400) or at the
 # method's own size, the sphere's PSNR under the key lights per material, and medians. Under it the figures that the
-# paper prints for its own method and its rivals; then, if the run had any, the medians for each effort.
+# paper prints for its own method and its rivals; then, if the run had any, the means for each effort (means, because
+# efforts differ by less than materials do).
 set -e
 table=$1 budget=${2:-60400}
 [ -r "$table" ] || { echo "usage: bench_table.sh TABLE.tsv [BUDGET]" >&2; exit 2; }
@@ -14,9 +15,8 @@ awk -F '\t' -v budget="$budget" '
 		if (size != "-" && size != budget || $(column["log_rmse"]) == "-") next
 		method = $2
 		if (("effort" in column) && $(column["effort"]) != "-") {
-			if ($1 == "(median)")
-				efforts = efforts sprintf("| %s | %d | %.3g | %.4g | %s / %s |\n", $(column["effort"]), $(column["bytes"]), $(column["fit_s"]), \
-					$(column["log_rmse"]), $(column["psnr_key_db"]), $(column["psnr_env_db"]))
+			if ($1 != "(median)")
+				effort_add($(column["effort"]))
 			next
 		}
 		if ($1 == "(median)") {
@@ -40,9 +40,24 @@ awk -F '\t' -v budget="$budget" '
 		split("", value)
 		if (any) print line
 	}
+	function effort_add(e) {
+		if (!(e in tried)) effort[++efforts] = e
+		tried[e]++
+		size_sum[e] += $(column["bytes"]); fit_sum[e] += $(column["fit_s"]); rmse_sum[e] += $(column["log_rmse"])
+		key_sum[e] += $(column["psnr_key_db"]); env_sum[e] += $(column["psnr_env_db"])
+	}
+	function table_of_efforts(    text, n, e, k) {
+		text = "\n| effort | bytes | fit s | log RMSE | PSNR key / env |\n|--:|--:|--:|--:|--:|\n"
+		for (n = 1; n <= efforts; n++) {
+			e = effort[n]; k = tried[e]
+			text = text sprintf("| %s | %.0f | %.3g | %.6f | %.2f / %.2f |\n", e, size_sum[e] / k, fit_sum[e] / k, rmse_sum[e] / k, key_sum[e] / k, env_sum[e] / k)
+		}
+		return text
+	}
 	END {
-		if (!methods) {print "bench_table.sh: no rows at " budget " bytes" > "/dev/stderr"; exit 1}
+		if (!methods && !efforts) {print "bench_table.sh: no rows at " budget " bytes" > "/dev/stderr"; exit 1}
 		printf "%s\n", head
+		if (!methods) {printf "%s", substr(table_of_efforts(), 2); exit}
 		line = "| method | bytes | numbers | fit s | decode s | evaluate ns | log RMSE | PSNR key / env |"; rule = "|---|--:|--:|--:|--:|--:|--:|--:|"
 		for (n = 1; n <= count; n++) {line = line " " materials[n] " |"; rule = rule "--:|"}
 		print line; print rule
@@ -59,5 +74,5 @@ awk -F '\t' -v budget="$budget" '
 		published("Cook-Torrance", "fruitwood-241 42.83 gold-metallic-paint 31.69 nickel 27.82")
 		published("Edwards et al.", "fruitwood-241 36.91 gold-metallic-paint 32.99 nickel 24.19")
 		published("Bilgili et al. 2011 (Tucker)", "fruitwood-241 42.5 gold-metallic-paint 38.57 nickel 37.88")
-		if (efforts) printf "\n| effort | bytes | fit s | log RMSE | PSNR key / env |\n|--:|--:|--:|--:|--:|\n%s", efforts
+		if (efforts) printf "%s", table_of_efforts()
 	}' "$table"
