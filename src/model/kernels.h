@@ -133,7 +133,7 @@ struct kernels {
 	 */
 	void (*cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix, size_t columns,
 	                       float *out, size_t out_stride);
-	/* One level along one axis of n >= 2 rows of `width` values, `stride` apart, coarse rows first; scratch: n * width. */
+	/* One level along one axis of n >= 2 rows of `width` values, `stride` apart, coarse rows first; scratch: 12 n. */
 	void (*cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch);
 	/* plane[place] += value cosine, 16 values each, for every term; the steps of cdf97_plane: spectrum_inverse.h. */
 	void (*spectrum_spread)(const struct spectrum_term *terms, size_t count, const float *cosine, float *plane);

@@ -16,7 +16,7 @@ struct spectrum {
 	size_t even_columns, odd_columns; /* the same rounded up to COLUMNS_STEP */
 	float *to_even, *to_odd;        /* [cell][harmonic] */
 	float *folded, *product;        /* theta_d rows of even_columns + odd_columns values each */
-	float *scratch;                 /* one line of rows for the wavelets */
+	float *scratch;                 /* for the wavelets */
 };
 
 uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
@@ -75,7 +75,7 @@ bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_er
 	t->to_odd = calloc(t->odd * t->odd_columns, sizeof(float));
 	t->folded = malloc(dims.theta_d * columns * sizeof(float));
 	t->product = malloc(dims.theta_d * columns * sizeof(float));
-	t->scratch = malloc(longest * dims.phi_d * sizeof(float));
+	t->scratch = malloc(12 * longest * sizeof(float));
 	if (!t->to_even || !t->to_odd || !t->folded || !t->product || !t->scratch) {
 		spectrum_free(t);
 		return error_memory(error, dims.theta_d * columns * sizeof(float));
@@ -133,8 +133,7 @@ void spectrum_forward(struct spectrum *t, float *table, float base)
 	for (uint32_t l = 0; l < t->levels; l++) {
 		for (size_t i = 0; i < rows; i++)
 			kernels->cdf97_forward(table + i * slice, columns, p, p, t->scratch);
-		for (size_t j = 0; j < columns; j++)
-			kernels->cdf97_forward(table + j * p, rows, slice, p, t->scratch);
+		kernels->cdf97_forward(table, rows, slice, columns * p, t->scratch);
 		rows = (rows + 1) / 2;
 		columns = (columns + 1) / 2;
 	}

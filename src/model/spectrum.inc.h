@@ -1,4 +1,6 @@
 /* spectrum.inc.h: products with cosine tables, and lifting steps. See kernels.h and spectrum.h. */
+#include <string.h>
+
 #include "spectrum.h"
 
 typedef float KERNEL(floats8) __attribute__((vector_size(32)));
@@ -49,37 +51,67 @@ static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t row
 	}
 }
 
-/* x[i] += factor (x[i - 1] + x[i + 1]) for i = first, first + 2, ...; the ends are mirrored. Each x[i] is a row of `width`. */
-static inline void KERNEL(lift)(float *x, size_t n, size_t stride, size_t width, size_t first, float factor)
-{
-	for (size_t i = first; i < n; i += 2) {
-		const float *before = x + (i ? i - 1 : 1) * stride, *after = x + (i + 1 < n ? i + 1 : i - 1) * stride;
-		float *here = x + i * stride;
-		for (size_t q = 0; q < width; q++)
-			here[q] += factor * (before[q] + after[q]);
-	}
-}
-
 #define CDF97_A (-1.586134342059924f)
 #define CDF97_B (-0.052980118572961f)
 #define CDF97_C 0.882911075530934f
 #define CDF97_D 0.443506852043971f
 
+/*
+ * One step along a line of n >= 2 vectors, `stride` floats apart: the four lifting steps in one pass, each a place behind the one before;
+ * x[-1] is x[1], x[n] is x[n - 2]. Low coefficients go where their line has been read, high ones to scratch and then behind them.
+ */
+static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(float *x, size_t n, size_t stride, float *scratch)
+{
+	typedef KERNEL(floats8) vector;
+	const size_t low = (n + 1) / 2, high = n / 2;
+	vector even = FLOATS8_OF(x), odd_a = {0}, even_b = {0}, odd_c = {0}; /* the last place after no step, the first, the second, the third */
+
+	for (size_t i = 0; i < low; i++) {
+		const float *here = x + 2 * i * stride;
+		const vector next = i + 1 < low ? FLOATS8_OF(here + 2 * stride) : even;
+		vector odd = odd_a;
+		__builtin_prefetch(here + 16, 1);
+		if (2 * i + 1 < n) {
+			__builtin_prefetch(here + stride + 16, 1);
+			odd = FLOATS8_OF(here + stride) + CDF97_A * (even + next);
+		}
+		const vector b = even + CDF97_B * ((i ? odd_a : odd) + odd);
+		if (i) {
+			const vector c = odd_a + CDF97_C * (even_b + b);
+			const vector d = even_b + CDF97_D * ((i > 1 ? odd_c : c) + c);
+			FLOATS8_AT(x + (i - 1) * stride) = d * SPECTRUM_GAIN;
+			FLOATS8_AT(scratch + 8 * (i - 1)) = c * (1 / SPECTRUM_GAIN);
+			odd_c = c;
+		}
+		odd_a = odd;
+		even_b = b;
+		even = next;
+	}
+	if (high == low) {
+		const vector c = odd_a + CDF97_C * (even_b + even_b);
+		FLOATS8_AT(scratch + 8 * (high - 1)) = c * (1 / SPECTRUM_GAIN);
+		FLOATS8_AT(x + (low - 1) * stride) = (even_b + CDF97_D * ((low > 1 ? odd_c : c) + c)) * SPECTRUM_GAIN;
+	} else {
+		FLOATS8_AT(x + (low - 1) * stride) = (even_b + CDF97_D * (odd_c + odd_c)) * SPECTRUM_GAIN;
+	}
+	for (size_t i = 0; i < high; i++)
+		FLOATS8_AT(x + (low + i) * stride) = FLOATS8_OF(scratch + 8 * i);
+}
+
 static void KERNEL(cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch)
 {
-	const size_t low = (n + 1) / 2;
+	const size_t whole = width / 8 * 8, rest = width - whole;
 
-	KERNEL(lift)(x, n, stride, width, 1, CDF97_A);
-	KERNEL(lift)(x, n, stride, width, 0, CDF97_B);
-	KERNEL(lift)(x, n, stride, width, 1, CDF97_C);
-	KERNEL(lift)(x, n, stride, width, 0, CDF97_D);
-	for (size_t i = 0; i < n; i++) {
-		const float *from = x + i * stride, scale = i % 2 ? 1 / SPECTRUM_GAIN : SPECTRUM_GAIN;
-		float *to = scratch + (i % 2 ? low + i / 2 : i / 2) * width;
-		for (size_t q = 0; q < width; q++)
-			to[q] = from[q] * scale;
-	}
+	for (size_t q = 0; q < whole; q += 8)
+		KERNEL(cdf97_forward_line)(x + q, n, stride, scratch);
+	if (!rest)
+		return;
+	/* What is left of a vector is worked on elsewhere. */
+	float *line = scratch + 4 * n;
+	memset(line, 0, 8 * n * sizeof *line);
 	for (size_t i = 0; i < n; i++)
-		for (size_t q = 0; q < width; q++)
-			x[i * stride + q] = scratch[i * width + q];
+		memcpy(line + 8 * i, x + i * stride + whole, rest * sizeof *line);
+	KERNEL(cdf97_forward_line)(line, n, 8, scratch);
+	for (size_t i = 0; i < n; i++)
+		memcpy(x + i * stride + whole, line + 8 * i, rest * sizeof *line);
 }
