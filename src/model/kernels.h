@@ -133,6 +133,13 @@ struct kernels {
 	 */
 	void (*cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix, size_t columns,
 	                       float *out, size_t out_stride);
+	/* The steps of cosines.h; rows of 16 values. */
+	void (*cosine_fold)(const float *x, size_t n, float *sum, float *difference);
+	void (*cosine_rotate)(const float *x, size_t n, const float *angle, float *a, float *b);
+	void (*cosine_join)(const float *a, const float *b, size_t n, float *out, size_t stride);
+	/* 16 rows of n values, less `base`, to out[n][16]; and every second of in[2 count][16] to the first values of 16 rows. */
+	void (*cosine_gather)(const float *rows, size_t n, float base, float *out);
+	void (*cosine_scatter)(const float *in, size_t count, size_t n, float *rows);
 	/* One level along one axis of n >= 2 rows of `width` values, `stride` apart, coarse rows first; scratch: 12 n. */
 	void (*cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch);
 	/* plane[place] += value cosine, 16 values each, for every term; the steps of cdf97_plane: spectrum_inverse.h. */

@@ -9,6 +9,7 @@
 #include "robust.inc.h"
 #include "robust_anchor.inc.h"
 #include "spectrum.inc.h"
+#include "cosines.inc.h"
 #include "spectrum_inverse.inc.h"
 #include "default.inc.h"
 
@@ -24,6 +25,11 @@ const struct kernels KERNEL(kernels) = {
 	.robust_scale = KERNEL(robust_scale),
 	.robust_sums = KERNEL(robust_sums),
 	.cosine_product = KERNEL(cosine_product),
+	.cosine_fold = KERNEL(cosine_fold),
+	.cosine_gather = KERNEL(cosine_gather),
+	.cosine_join = KERNEL(cosine_join),
+	.cosine_rotate = KERNEL(cosine_rotate),
+	.cosine_scatter = KERNEL(cosine_scatter),
 	.cdf97_forward = KERNEL(cdf97_forward),
 	.cdf97_plane = KERNEL(cdf97_plane),
 	.spectrum_spread = KERNEL(spectrum_spread),
