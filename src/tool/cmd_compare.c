@@ -330,6 +330,7 @@ const struct command command_compare = {
 	         "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
 	         "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"
 	         "  albedo     the largest share of light sent back, for directions 0 to 85 degrees from the normal\n"
+	         "Where the file is the one that was packed, the errors that the record tells of each layer are measured again and must agree.\n"
 	         "Cells that are invalid in the measured file count in nothing: they are black on both sides.\n"
 	         "\n"
 	         "      --light=NAME   key, env or point alone (all three)\n"

@@ -18,6 +18,7 @@
 /* What a worker sends back: this, then the PNG files one after another. */
 struct compare_result {
 	struct comparison comparison;
+	bool confirmed; /* packed from this very file, and the errors that the record tells of every layer are what was measured */
 	uint32_t record_bytes;
 	uint32_t png_bytes[LIGHTING_COUNT]; /* 0 where there is none */
 };

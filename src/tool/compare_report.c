@@ -103,6 +103,7 @@ static void json_row(const struct compare_report *report, const struct compare_i
 	json_object(&json, NULL);
 	json_string(&json, "name", item->entry.name);
 	figures_json(&json, report, values);
+	json_string(&json, "recorded_errors", item->result.confirmed ? "confirmed" : "of another file");
 	json_object(&json, "largest_relative_at");
 	json_string(&json, "channel", CHANNEL_NAMES[worst->channel]);
 	json_integer(&json, "i", worst->i);
@@ -151,12 +152,13 @@ static void summarise(const double *sorted, size_t count, bool low_is_bad, doubl
 }
 
 static void summary_json(const struct compare_report *report, double rows[SUMMARY_ROWS][FIGURE_COUNT], size_t used,
-                         size_t failed)
+                         size_t confirmed, size_t failed)
 {
 	struct json json = json_begin(stdout, false);
 	json_object(&json, NULL);
 	json_bool(&json, "summary", true);
 	json_integer(&json, "materials", used);
+	json_integer(&json, "confirmed", confirmed);
 	json_integer(&json, "failed", failed);
 	for (int r = 0; used && r < SUMMARY_ROWS; r++) {
 		json_object(&json, SUMMARY_NAMES[r]);
@@ -171,10 +173,12 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
                                  size_t failed_count, bp_error *error)
 {
 	double rows[SUMMARY_ROWS][FIGURE_COUNT] = {{0}}, values[FIGURE_COUNT], out[SUMMARY_ROWS];
-	size_t used = 0;
+	size_t used = 0, confirmed = 0;
 	double *column = malloc((count + 1) * sizeof *column);
 	if (!column)
 		return error_memory(error, count * sizeof *column);
+	for (size_t n = 0; n < count; n++)
+		confirmed += items[n].done && !items[n].failed && items[n].result.confirmed;
 	for (int f = 0; f < FIGURE_COUNT; f++) {
 		used = 0;
 		for (size_t n = 0; n < count; n++)
@@ -190,10 +194,16 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 			rows[r][f] = out[r];
 	}
 	free(column);
-	if (report->json)
-		summary_json(report, rows, used, failed_count);
-	else
-		for (int r = 0; used && r < SUMMARY_ROWS; r++)
-			text_row(report, SUMMARY_NAMES[r], rows[r], NULL);
+	if (report->json) {
+		summary_json(report, rows, used, confirmed, failed_count);
+		return BP_OK;
+	}
+	for (int r = 0; used && r < SUMMARY_ROWS; r++)
+		text_row(report, SUMMARY_NAMES[r], rows[r], NULL);
+	if (used && confirmed == count)
+		printf("The errors that the records tell of their layers are confirmed.\n");
+	else if (used)
+		printf("The errors that the records tell of their layers are confirmed for %zu of %zu materials; the others were packed from other "
+		       "files, or failed.\n", confirmed, count);
 	return BP_OK;
 }
