@@ -28,10 +28,21 @@ static double wall(void)
 	return clock_seconds(CLOCK_MONOTONIC);
 }
 
+/* Evaluation n is of the directions first(n) and second(n), whole batches of them beside each other. */
+static int first(int n)
+{
+	return n % DIRECTIONS;
+}
+
+static int second(int n)
+{
+	return (n + n / DIRECTIONS * (DIRECTIONS / PARTNERS)) % DIRECTIONS;
+}
+
 void directions_make(struct directions *d)
 {
 	unsigned long long u = 1;
-	for (int n = 0; n < EVALUATIONS; n++)
+	for (int n = 0; n < DIRECTIONS; n++)
 		for (int side = 0; side < 2; side++) {
 			float *w = side ? d->wo[n] : d->wi[n];
 			double z = 1 - uniform_next(&u), phi = 2 * M_PI * uniform_next(&u), r = sqrt(1 - z * z);
@@ -116,8 +127,8 @@ static void loads_time(const bp_archive *archive, uint64_t index, const bp_mater
 static void raw_libm(const struct lattice *raw, const struct directions *d)
 {
 	for (int n = 0; n < EVALUATIONS; n++) {
-		const double wi[3] = {(double)d->wi[n][0], (double)d->wi[n][1], (double)d->wi[n][2]};
-		const double wo[3] = {(double)d->wo[n][0], (double)d->wo[n][1], (double)d->wo[n][2]};
+		const float *fi = d->wi[first(n)], *fo = d->wo[second(n)];
+		const double wi[3] = {(double)fi[0], (double)fi[1], (double)fi[2]}, wo[3] = {(double)fo[0], (double)fo[1], (double)fo[2]};
 		double h[3] = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]}, length = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
 		for (int c = 0; c < 3; c++)
 			h[c] /= length;
@@ -136,7 +147,7 @@ static void raw_ours(const struct lattice *raw, const struct directions *d)
 	const f32x4 scale = lattice_scale_of(LATTICE_MERL);
 	for (int n = 0; n < EVALUATIONS; n++) {
 		f32x4 at = {0, 0, 0, 0};
-		direction_locate(scale, d->wi[n], d->wo[n], &at);
+		direction_locate(scale, d->wi[first(n)], d->wo[second(n)], &at);
 		uint32_t i = (uint32_t)at[0], j = (uint32_t)at[1], k = (uint32_t)at[2];
 		size_t cell = lattice_index(LATTICE_MERL, i < 89 ? i : 89, j < 89 ? j : 89, k < 179 ? k : 179);
 		sink += raw->rgb[0][cell] + raw->rgb[1][cell] + raw->rgb[2][cell];
@@ -147,30 +158,51 @@ static void one_by_one(const bp_material *material, const struct directions *d)
 {
 	for (int n = 0; n < EVALUATIONS; n++) {
 		float rgb[3];
-		bp_material_evaluate(material, d->wi[n], d->wo[n], rgb);
+		bp_material_evaluate(material, d->wi[first(n)], d->wo[second(n)], rgb);
 		sink += (double)(rgb[0] + rgb[1] + rgb[2]);
 	}
+}
+
+static void batch(const bp_material *material, struct directions *d, int n)
+{
+	const int i = first(n), o = second(n);
+	bp_material_evaluate_batch(material, BATCH, (const float *const[]){d->in[0] + i, d->in[1] + i, d->in[2] + i},
+	                           (const float *const[]){d->in[3] + o, d->in[4] + o, d->in[5] + o},
+	                           (float *const[]){d->out[0], d->out[1], d->out[2]});
 }
 
 static void in_batches(const bp_material *material, struct directions *d)
 {
 	for (int n = 0; n < EVALUATIONS; n += BATCH)
-		bp_material_evaluate_batch(material, BATCH, (const float *const[]){d->in[0] + n, d->in[1] + n, d->in[2] + n},
-		                           (const float *const[]){d->in[3] + n, d->in[4] + n, d->in[5] + n},
-		                           (float *const[]){d->out[0] + n, d->out[1] + n, d->out[2] + n});
+		batch(material, d, n);
 }
 
 /* The batch's values are those of single calls, and finite; false otherwise. */
-static bool values_hold(const bp_material *material, const struct directions *d)
+static bool values_hold(const bp_material *material, struct directions *d)
 {
 	for (int n = 0; n < EVALUATIONS; n++) {
 		float rgb[3];
-		bp_material_evaluate(material, d->wi[n], d->wo[n], rgb);
+		if (n % BATCH == 0)
+			batch(material, d, n);
+		bp_material_evaluate(material, d->wi[first(n)], d->wo[second(n)], rgb);
 		for (int c = 0; c < 3; c++)
-			if (!(rgb[c] >= 0 && isfinite(rgb[c]) && rgb[c] == d->out[c][n]))
+			if (!(rgb[c] >= 0 && isfinite(rgb[c]) && rgb[c] == d->out[c][n % BATCH]))
 				return false;
 	}
 	return true;
+}
+
+static void draws(const bp_material *material, const struct directions *d)
+{
+	float wi[3];
+	for (int n = 0; n < EVALUATIONS; n++)
+		sink += (double)bp_material_sample(material, d->wo[second(n)], d->u[first(n)], wi);
+}
+
+static void densities(const bp_material *material, const struct directions *d)
+{
+	for (int n = 0; n < EVALUATIONS; n++)
+		sink += (double)bp_material_pdf(material, d->wi[first(n)], d->wo[second(n)]);
 }
 
 #define TIMED(figure, work)                                               \
@@ -193,9 +225,8 @@ static bool evaluations_time(const struct lattice *raw, const bp_material *expan
 	bool hold = values_hold(compact, d);
 	TIMED(BATCH_EXPANDED, in_batches(expanded, d));
 	hold = hold && values_hold(expanded, d);
-	float wi[3];
-	TIMED(DRAW, for (int n = 0; n < EVALUATIONS; n++) sink += (double)bp_material_sample(expanded, d->wo[n], d->u[n], wi));
-	TIMED(DENSITY, for (int n = 0; n < EVALUATIONS; n++) sink += (double)bp_material_pdf(expanded, d->wi[n], d->wo[n]));
+	TIMED(DRAW, draws(expanded, d));
+	TIMED(DENSITY, densities(expanded, d));
 	return hold;
 }
 

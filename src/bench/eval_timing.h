@@ -12,7 +12,8 @@
 #include "../brdfpack.h"
 #include "inputs.h"
 
-enum { ROUNDS = 7, EVALUATIONS = 1 << 17, BATCH = 1024, MOST = MATERIALS_MAX };
+/* Each direction is paired with eight others, so that the pairs are many and what they are made from stays in the cache, as a renderer's does. */
+enum { ROUNDS = 7, DIRECTIONS = 1 << 14, PARTNERS = 8, EVALUATIONS = PARTNERS * DIRECTIONS, BATCH = 1024, MOST = MATERIALS_MAX };
 
 enum figure {
 	READ_CACHED, READ_COLD, LOAD_EXPANDED, LOAD_COMPACT, LOAD_PREVIEW,
@@ -25,10 +26,10 @@ struct series {
 	int count;
 };
 
-/* Pairs of random directions, by pair and by component, and random numbers. */
+/* Random directions and numbers; the components of the directions also in arrays of their own, and room for a batch's values. */
 struct directions {
-	float wi[EVALUATIONS][3], wo[EVALUATIONS][3], u[EVALUATIONS][3];
-	float in[6][EVALUATIONS], out[3][EVALUATIONS];
+	float wi[DIRECTIONS][3], wo[DIRECTIONS][3], u[DIRECTIONS][3];
+	float in[6][DIRECTIONS], out[3][BATCH];
 };
 
 /* Uniform over the hemisphere, which touches more of the table than what a renderer does. */
