@@ -62,13 +62,13 @@ static inline float quarter_turns(float y, float x)
 	return fabsf((y > x ? 1.0f : 0.0f) - a); /* 1 - a or a, without a branch */
 }
 
-/* The same from y^2 and x^2: the square root runs beside the polynomial, not before the division. */
-static inline float quarter_turns_of_squares(float y, float x)
+/* The same from y^2 and x^2, times `scale`: the square root runs beside the polynomial, not before the division. */
+static inline float quarter_turns_of_squares(float y, float x, float scale)
 {
 	float low = y > x ? x : y, high = y > x ? y : x;
 	float q = low / (high > FLT_MIN ? high : FLT_MIN);
-	float a = quarter_turns_polynomial(q) * sqrtf(q);
-	return fabsf((y > x ? 1.0f : 0.0f) - a);
+	float a = quarter_turns_polynomial(q) * (sqrtf(q) * scale);
+	return fabsf((y > x ? scale : 0.0f) - a);
 }
 
 typedef float f32x4 __attribute__((vector_size(16)));
@@ -101,16 +101,16 @@ static inline f32x4 lattice_scale_of(struct lattice_dims dims)
 	return (f32x4){(float)dims.theta_h * (float)dims.theta_h, (float)dims.theta_d, 0.5f * (float)dims.phi_d, 0};
 }
 
-/* FLT_MIN, 1 and the polynomial's coefficients, in all lanes: in memory, where compilers would rather spread them anew each time. */
-extern const f32x4 quarter_turns_x4[10] __attribute__((visibility("hidden")));
+/* FLT_MIN and the polynomial's coefficients, in all lanes: in memory, where compilers would rather spread them anew each time. */
+extern const f32x4 quarter_turns_x4[9] __attribute__((visibility("hidden")));
 
 /* quarter_turns_of_squares for four at once, to the bit. */
-static inline f32x4 quarter_turns_of_squares_x4(f32x4 y, f32x4 x)
+static inline f32x4 quarter_turns_of_squares_x4(f32x4 y, f32x4 x, f32x4 scale)
 {
 	const f32x4 *c = quarter_turns_x4;
-	f32x4 q = min_x4(x, y) / max_x4(max_x4(y, x), c[0]), q2 = q * q;
-	f32x4 a = (((c[2] * q + c[3]) * q2 + (c[4] * q + c[5])) * (q2 * q2) + ((c[6] * q + c[7]) * q2 + (c[8] * q + c[9]))) * sqrt_x4(q);
-	return abs_x4((f32x4)((i32x4)c[1] & (y > x)) - a);
+	f32x4 q = min_x4(x, y) / max_x4(max_x4(y, x), c[0]), q2 = q * q, root = sqrt_x4(q) * scale;
+	f32x4 a = (((c[1] * q + c[2]) * q2 + (c[3] * q + c[4])) * (q2 * q2) + ((c[5] * q + c[6]) * q2 + (c[7] * q + c[8]))) * root;
+	return abs_x4((f32x4)((i32x4)scale & (y > x)) - a);
 }
 
 /* Squared length that still counts as 1: what rounding to float leaves of a normalised vector. */
@@ -146,10 +146,12 @@ static inline struct direction_arguments direction_arguments(float ix, float iy,
 	return (struct direction_arguments){{ring, d, y * y}, {up, s, x * x * (at_pole ? 1 : s)}, y * x > 0};
 }
 
-/* The point, from the three arctangents in quarter turns. */
-static inline struct lattice_point direction_point(const float scale[3], float theta_h, float theta_d, float phi_d, bool reflected)
+/* The point, for lattice_scale_of's scale. */
+static inline struct lattice_point direction_point(const struct direction_arguments *a, const float scale[3])
 {
-	return (struct lattice_point){sqrtf(theta_h * scale[0]), theta_d * scale[1], fabsf((reflected ? 2 * scale[2] : 0) - phi_d * scale[2])};
+	float h = quarter_turns_of_squares(a->y[0], a->x[0], scale[0]), d = quarter_turns_of_squares(a->y[1], a->x[1], scale[1]);
+	float p = quarter_turns_of_squares(a->y[2], a->x[2], scale[2]);
+	return (struct lattice_point){sqrtf(h), d, fabsf((a->reflected ? 2 * scale[2] : 0) - p)};
 }
 
 /* One pair of directions. Returns false, and leaves *out unset, where direction_usable says so. */
@@ -178,14 +180,20 @@ static inline bool direction_locate(f32x4 scale, const float wi[3], const float 
 		i *= direction_normaliser(length[0]);
 		o *= direction_normaliser(length[1]);
 	}
-	const f32x4 cross = s * __builtin_shufflevector(d, d, 1, 0, 2, 3);
-	const bool at_pole = flat[2] < FLT_MIN;
-	const float y = at_pole ? d[1] : cross[0] - cross[1], x = at_pole ? -d[0] : d[2];
-	const f32x4 top = {flat[2], length[3], y * y, 0}, bottom = {up[2], length[2], x * x * (at_pole ? 1 : length[2]), 1};
-	const i32x4 reflected = (f32x4){0, 0, y * x, 0} > none;
-	f32x4 turns = quarter_turns_of_squares_x4(top, bottom) * scale;
-	f32x4 at = abs_x4((f32x4)((i32x4)(scale + scale) & reflected) - turns);
-	at[0] = sqrtf(turns[0]);
+	/* the arguments of the arctangents; the last lane is of no use */
+	const f32x4 cross = s * __builtin_shufflevector(d, d, 1, 0, 2, 3), y = cross - __builtin_shufflevector(cross, cross, 1, 1, 1, 1);
+	const f32x4 flat_length = __builtin_shufflevector(flat, length, 2, 6, 3, 7);
+	f32x4 factor = {1, 1, 1, 1}, top = __builtin_shufflevector(flat_length, y * y, 0, 3, 4, 4);
+	factor[2] = length[2];
+	f32x4 bottom = __builtin_shufflevector(up, length, 2, 6, 3, 7) * factor, sign = __builtin_shufflevector(y, y, 0, 0, 0, 0) * d;
+	if (flat_length[0] < FLT_MIN) { /* theta_h is 0 */
+		top[2] = d[1] * d[1];
+		bottom[2] = d[0] * d[0];
+		sign[2] = d[1] * -d[0];
+	}
+	const f32x4 turns = quarter_turns_of_squares_x4(top, bottom, scale), root = {sqrtf(turns[0]), 0, 0, 0};
+	f32x4 at = abs_x4((f32x4)((i32x4)(scale * (f32x4){0, 0, 2, 0}) & (sign > none)) - turns);
+	at[0] = root[0];
 	*out = at;
 	return true;
 }

@@ -56,9 +56,7 @@ __attribute__((always_inline)) static inline void KERNEL(points)(const struct ta
 		float no = unit ? 1 : direction_normaliser(ox[m] * ox[m] + oy[m] * oy[m] + oz[m] * oz[m]);
 		struct direction_arguments a =
 			direction_arguments(ix[m] * ni, iy[m] * ni, iz[m] * ni, ox[m] * no, oy[m] * no, oz[m] * no);
-		struct lattice_point at =
-			direction_point(scale, quarter_turns_of_squares(a.y[0], a.x[0]), quarter_turns_of_squares(a.y[1], a.x[1]),
-		                    quarter_turns_of_squares(a.y[2], a.x[2]), a.reflected);
+		struct lattice_point at = direction_point(&a, scale);
 		to->h[m] = at.h;
 		to->d[m] = at.d;
 		to->p[m] = at.p;

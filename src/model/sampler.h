@@ -26,7 +26,7 @@ struct sampler {
 /* quarter_turns_of_squares; of the vector form, because compilers make a branch of the scalar one that no predictor can guess */
 static inline float turns_of_squares(float y, float x)
 {
-	return quarter_turns_of_squares_x4((f32x4){y, 0, 0, 0}, (f32x4){x, 1, 1, 1})[0];
+	return quarter_turns_of_squares_x4((f32x4){y, 0, 0, 0}, (f32x4){x, 1, 1, 1}, (f32x4){1, 1, 1, 1})[0];
 }
 
 /* Where between the nodes an angle lies, from the squares of its sine and cosine: dense at grazing. cosine = 0 is the last node. */
