@@ -12,13 +12,14 @@
 #     valgrind  a small build, list, extract and verify under valgrind
 #     stress    adversarial materials through every profile (the short form of `make stress`)
 #     faults    damaged archives, killed and starved builds, threads (the short form of `make faults`)
+#     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
 #     fuzz      each fuzz target for some seconds
 #
 # Without a JOB: all of them. The last line is "N passed, M failed"; the exit code is 1 when M > 0.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
-all_jobs="unit cli install python asan clang valgrind stress faults fuzz"
+all_jobs="unit cli install python asan clang valgrind stress faults bench fuzz"
 jobs=${*:-$all_jobs}
 logs=build/logs
 passed=0
@@ -122,6 +123,11 @@ job_stress() {
 job_faults() {
 	build test CFLAGS="-O3 -g -Werror" || return
 	check "faults" "$logs/faults.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" faults
+}
+job_bench() {
+	build test CFLAGS="-O3 -g -Werror" || return
+	check "benchmark program" "$logs/bench-make.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" build/test/bench/brdfpack-bench &&
+		check "benchmarks" "$logs/bench.log" tests/bench.sh build/test
 }
 job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" FUZZ_SECONDS=6 fuzz; }
 

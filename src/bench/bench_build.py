@@ -54,6 +54,7 @@ def main():
     parser.add_argument("--label", default="demo set")
     parser.add_argument("--profile", default=None)
     parser.add_argument("--names", help="only the materials that this file lists")
+    parser.add_argument("--any-lattice", action="store_true", help="tables of other extents than MERL's (for tests)")
     parser.add_argument("folder")
     options = parser.parse_args()
 
@@ -63,7 +64,7 @@ def main():
     try:
         archive = os.path.join(scratch, "bench.bpk")
         out = os.path.join(scratch, "out")
-        build = [TOOL, "build", "-q"] + (["--profile", options.profile] if options.profile else [])
+        build = [TOOL, "build", "-q"] + (["--profile", options.profile] if options.profile else []) + bench_head.lattice_flags(options.any_lattice)
         commands = [
             ("cat", ["cat"] + files, count),
             ("build -j1", build + ["-j1", "-o", archive] + files, count),

@@ -35,6 +35,10 @@ def materials(folder, names=None):
     return files
 
 
+def lattice_flags(any_lattice):
+    return ["--any-lattice"] if any_lattice else []
+
+
 def print_head(script, files, label, runs, prefix="# "):
     for key, value in (
             ("machine", "%s, %d usable cores, load %.1f" % (machine(), len(os.sched_getaffinity(0)), os.getloadavg()[0])),

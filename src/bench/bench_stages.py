@@ -30,10 +30,11 @@ def seconds_to_read(path):
     return time.process_time() - start
 
 
-def stages_of_build(profile, files, output):
+def stages_of_build(profile, files, output, any_lattice):
     """{stage: [seconds of each material]}, in the tool's order."""
-    lines = subprocess.run([bench_head.TOOL, "build", "-q", "--json", "-j1", "--profile", profile, "-o", output] + files,
-                           check=True, capture_output=True, text=True).stdout.splitlines()
+    build = [bench_head.TOOL, "build", "-q", "--json", "-j1", "--profile", profile, "-o", output]
+    lines = subprocess.run(build + bench_head.lattice_flags(any_lattice) + files, check=True, capture_output=True,
+                           text=True).stdout.splitlines()
     materials = [m for m in map(json.loads, lines) if "cpu_seconds" in m]
     return {stage: [m["cpu_seconds"][stage] for m in materials] for stage in materials[0]["cpu_seconds"]}
 
@@ -48,6 +49,7 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--label", default="demo set")
     parser.add_argument("--names", help="only the materials that this file lists")
+    parser.add_argument("--any-lattice", action="store_true", help="tables of other extents than MERL's (for tests)")
     parser.add_argument("folder")
     options = parser.parse_args()
     files = bench_head.materials(options.folder, options.names)
@@ -56,7 +58,8 @@ def main():
         for _ in range(options.runs):
             reading.append([seconds_to_read(path) for path in files])
             for profile in PROFILES:
-                runs[profile].append(stages_of_build(profile, files, os.path.join(scratch, "stages.bpk")))
+                runs[profile].append(stages_of_build(profile, files, os.path.join(scratch, "stages.bpk"),
+                                                     options.any_lattice))
 
     read = per_material(reading)
     table = {p: {stage: per_material([run[stage] for run in runs[p]]) for stage in runs[p][0]} for p in PROFILES}
