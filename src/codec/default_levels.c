@@ -46,8 +46,10 @@ static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, con
 	uint32_t *slot = &p->level_slot[field][at];
 	uint8_t *top = p->top[field];
 
-	if (!*slot)
+	if (!*slot) {
 		*slot = p->levels_count++;
+		memset(p->levels[*slot], 0, sizeof *p->levels);
+	}
 	p->levels[*slot][y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE] = level;
 	top[at] = top[at] < bits ? bits : top[at];
 	top[own] = top[own] < bits ? bits : top[own];
@@ -61,7 +63,6 @@ uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float st
 	uint32_t least_bits, planes = 0;
 
 	memcpy(&least_bits, &least, sizeof least_bits);
-	memset(p->levels, 0, p->levels_count * sizeof *p->levels);
 	p->levels_count = 1;
 	for (uint32_t f = 0; f < 3; f++) {
 		memset(p->level_slot[f], 0, (size_t)(lanes + 4) * p->bands.blocks * sizeof *p->level_slot[f]);

@@ -17,14 +17,20 @@ bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **o
 	const size_t blocks = ((size_t)dims.phi_d + 4) * p->bands.blocks, slots = 3 * blocks + 1;
 	const size_t bytes = 3 * blocks * (encoder ? 10 : 5);
 	unsigned char *at = p->block = calloc(bytes, 1);
-	/* Room for all there can be. Pages that are never touched cost nothing, and calloc's are zero. */
-	p->pool = calloc(slots, sizeof *p->pool);
-	p->levels = encoder ? calloc(slots, sizeof *p->levels) : NULL;
+	/*
+	 * Room for all there can be: pages that are never touched cost nothing. Not calloc: a worker's memory has been in use before,
+	 * and 100 MB would be zeroed for every material. Who takes a place zeroes it.
+	 */
+	p->pool = malloc(slots * sizeof *p->pool);
+	p->levels = encoder ? malloc(slots * sizeof *p->levels) : NULL;
 	p->contexts = malloc(sizeof *p->contexts);
 	if (!at || !p->pool || (encoder && !p->levels) || !p->contexts) {
 		planes_free(p);
 		return error_memory(error, slots * sizeof *p->pool);
 	}
+	memset(p->pool, 0, sizeof *p->pool);
+	if (encoder)
+		memset(p->levels, 0, sizeof *p->levels);
 	p->pool_count = p->levels_count = 1;
 	/* The wider ones first, so that all are aligned. */
 	for (int f = 0; f < 3; f++, at += blocks * sizeof(uint32_t))
@@ -58,7 +64,6 @@ void planes_start(struct planes *p, uint32_t count)
 		memset(p->slot[f], 0, blocks * sizeof *p->slot[f]);
 		memset(p->active[f], 0, blocks);
 	}
-	memset(p->pool, 0, p->pool_count * sizeof *p->pool);
 	p->pool_count = 1;
 	p->planes = count;
 	plane_contexts_reset(p->contexts);

@@ -366,6 +366,7 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 						continue;
 					u.active[at] = 1;
 					u.slot[at] = p->pool_count++;
+					memset(&p->pool[u.slot[at]], 0, sizeof *p->pool);
 				}
 				code_block(&u, decode, b, by, bx, at, fresh);
 			}
