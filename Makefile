@@ -221,14 +221,14 @@ bench-eval: bench-data $(BUILD)/bench/brdfpack-bench-eval
 	$(Q)[ $(BENCH_OUT)/eval.bpk -nt $(BUILD)/brdfpack ] || { mkdir -p $(BENCH_OUT) && $(BUILD)/brdfpack build -q -o $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo); }
 	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BUILD)/bench/brdfpack-bench-eval $(BENCH_EVAL_FLAGS) $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo)
 
-# of the two scripts: --runs N, --names FILE
+# of the two scripts: --runs N, --names FILE; of bench_build.py: --cold
 BENCH_BUILD_FLAGS ?=
 bench: bench-build bench-stages
 	$(Q)$(MAKE) --no-print-directory bench-methods
 bench-build: bench-data
 	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_build.py --label "$(BENCH_LABEL)" $(BENCH_BUILD_FLAGS) $(or $(BENCH_DATA),$(BENCH_DEMO))
 bench-stages: bench-data
-	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_stages.py --label "$(BENCH_LABEL)" $(BENCH_BUILD_FLAGS) $(or $(BENCH_DATA),$(BENCH_DEMO))
+	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_stages.py --label "$(BENCH_LABEL)" $(filter-out --cold,$(BENCH_BUILD_FLAGS)) $(or $(BENCH_DATA),$(BENCH_DEMO))
 
 $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
 	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
