@@ -71,7 +71,7 @@ help:
 	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
-	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man page"
+	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man pages"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  clean        removes $(BUILD)/"
 	@echo "Knobs:"
@@ -234,7 +234,7 @@ $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
 	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
 
 install: all $(BUILD)/brdfpack.pc
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/share/man/man1
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man3
 	install -m 755 $(BUILD)/brdfpack $(DESTDIR)$(PREFIX)/bin/
 	install -m 644 src/brdfpack.h $(DESTDIR)$(PREFIX)/include/
 	install -m 644 $(BUILD)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/
@@ -243,11 +243,12 @@ install: all $(BUILD)/brdfpack.pc
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	install -m 644 $(BUILD)/brdfpack.pc $(DESTDIR)$(LIBDIR)/pkgconfig/
 	install -m 644 src/tool/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man1/
+	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
 
 uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a
 	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
-	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1
+	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man3/libbrdfpack.3
 
 clean:
 	rm -rf $(BUILD)
