@@ -11,7 +11,7 @@
 struct compact_row {
 	float *root;     /* fourth root of the mean of the channels, in [0, 1] */
 	float *share[2]; /* R and B as shares of the sum; 1/3 where the cell is black */
-	float *weight;   /* what the shares' errors count, in (0, 1]: little in dark cells */
+	float *mean;     /* of the channels, in [0, 1] */
 };
 
 /* Cells 0..width of a block, and what makes them a whole number of vectors: read, but of no weight. */
@@ -84,13 +84,13 @@ static void hats_make(uint32_t width, uint32_t half, struct hats *out)
 	}
 }
 
-/* The codes of both shares; dark cells count little. */
-static void fit_weighted(const struct hats *hats, const float *const share[2], const float *weight, float *const codes[2])
+/* The codes of both shares; a cell's errors count 1e-6 to 1: little where it is dark. */
+static void fit_weighted(const struct hats *hats, const float *const share[2], const float *mean, float dark, float *const codes[2])
 {
 	f32x4 system[5] = {{0}}, right[2][3] = {{{0}}};
 	float m[5];
 	for (uint32_t k = 0; k < CELLS_MAX; k += 4) {
-		const f32x4 w = load4(weight + k);
+		const f32x4 m4 = load4(mean + k), bright = m4 / (m4 + dark), w = bright * bright + 1e-6f;
 		for (int n = 0; n < 5; n++)
 			system[n] += w * load4(hats->product[n] + k);
 		for (int c = 0; c < 2; c++) {
@@ -125,14 +125,14 @@ static inline void range_find(const float *x, uint32_t count, float *least, floa
 }
 
 /* The three codes of a block's shares, within the range of the shares themselves. */
-static void fit_shares(const struct hats *hats, const float *const share[2], const float *weight, float *const codes[2])
+static void fit_shares(const struct hats *hats, const float *const share[2], const float *mean, float dark, float *const codes[2])
 {
 	const float STEEP = 0.02f; /* from this range within a block on, dark cells may mislead the plain fit */
 	float low[2], high[2];
 	for (int c = 0; c < 2; c++)
 		range_find(share[c], hats->width + 1, &low[c], &high[c]);
 	if (high[0] - low[0] > STEEP || high[1] - low[1] > STEEP) {
-		fit_weighted(hats, share, weight, codes);
+		fit_weighted(hats, share, mean, dark, codes);
 	} else {
 		for (int c = 0; c < 2; c++) {
 			f32x4 sum[3] = {{0}};
@@ -148,20 +148,19 @@ static void fit_shares(const struct hats *hats, const float *const share[2], con
 			codes[c][a] = codes[c][a] > low[c] ? (codes[c][a] < high[c] ? codes[c][a] : high[c]) : low[c];
 }
 
-static void row_prepare(const struct expansion *e, size_t row, float factor, float dark, uint32_t padded, int channels,
-                        struct compact_row *out)
+static void row_prepare(const struct expansion *e, size_t row, float factor, uint32_t padded, int channels, struct compact_row *out)
 {
 	const uint32_t width = e->dims.phi_d;
 	const float *red = e->rgb[0] + row * width, *green = e->rgb[1] + row * width, *blue = e->rgb[2] + row * width;
-	float *restrict root = out->root, *restrict r_share = out->share[0], *restrict b_share = out->share[1], *restrict weight = out->weight;
+	float *restrict root = out->root, *restrict r_share = out->share[0], *restrict b_share = out->share[1], *restrict means = out->mean;
 	const float third = factor / 3;
 	for (uint32_t k = 0; k < width; k++) {
 		float r = red[k] * third, b = blue[k] * third, mean = r + green[k] * third + b;
 		bool black = mean < 0x1p-120f;
-		float per = 1 / (black ? 1 : mean), bright = mean / (mean + dark);
+		float per = 1 / (black ? 1 : mean);
 		r_share[k] = black ? 1.0f / 3 : r * per;
 		b_share[k] = black ? 1.0f / 3 : b * per;
-		weight[k] = bright * bright + 1e-6f;
+		means[k] = mean;
 		root[k] = sqrtf(sqrtf(mean));
 	}
 	for (uint32_t k = width; k < padded; k++) {
@@ -169,7 +168,7 @@ static void row_prepare(const struct expansion *e, size_t row, float factor, flo
 		for (int c = 0; c < 2 && channels == 3; c++)
 			out->share[c][k] = out->share[c][k - width];
 		if (channels == 3)
-			out->weight[k] = out->weight[k - width];
+			out->mean[k] = out->mean[k - width];
 	}
 }
 
@@ -250,14 +249,14 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	}
 	for (size_t r = 0; r < rows; r++) {
 		uint8_t *block = row_at(t, r / e->dims.theta_d, r % e->dims.theta_d);
-		row_prepare(e, r, factor, dark, padded, t->channels, &row);
+		row_prepare(e, r, factor, padded, t->channels, &row);
 		for (uint32_t b = 0; b < blocks; b++, block += 2 * t->block_bytes) {
 			block_roots(row.root + b * t->width, t->width + 1, block);
 			if (t->channels != 3)
 				continue;
 			const float *const share[2] = {row.share[0] + b * t->width, row.share[1] + b * t->width};
 			float *const codes[2] = {knots[0] + (r * blocks + b) * 3, knots[1] + (r * blocks + b) * 3};
-			fit_shares(&hats, share, row.weight + b * t->width, codes);
+			fit_shares(&hats, share, row.mean + b * t->width, dark, codes);
 			for (int c = 0; c < 2; c++)
 				for (int a = 0; a < 3; a++) {
 					low[c] = codes[c][a] < low[c] ? codes[c][a] : low[c];

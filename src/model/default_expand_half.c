@@ -14,7 +14,7 @@
 #include "default_terms.h"
 #include "kernels.h"
 
-enum { COLUMNS_STEP = 16 }; /* cosine_product works on so many columns at once */
+enum { COLUMNS_STEP = 16, ROWS_STEP = 16 }; /* cosine_product works on so many columns at once; rows whose fields stay in the nearest cache */
 
 /* One field's harmonics in use, and their values at the rows that are wanted. */
 struct narrow {
@@ -71,26 +71,27 @@ static bp_status narrow_make(const struct spectrum_inverse *inverse, const struc
 bp_status default_expand_half_blocks(const struct model *model, uint32_t layers, default_block_fn *take, void *user, bp_error *error)
 {
 	const struct lattice_dims d = model->dims, h = {d.theta_h / 2, d.theta_d / 2, d.phi_d / 2};
-	const size_t columns = (h.phi_d + COLUMNS_STEP - 1) / COLUMNS_STEP * COLUMNS_STEP, slice = (size_t)h.theta_d * columns;
+	const size_t columns = (h.phi_d + COLUMNS_STEP - 1) / COLUMNS_STEP * COLUMNS_STEP, piece = ROWS_STEP * columns;
 	const size_t plane_bytes = (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof(float);
 	struct narrow narrow[3] = {{0}};
 	struct spectrum_inverse *inverse = NULL;
 	struct default_terms terms = {0};
-	float *plane = memory_alloc(plane_bytes), *fields = malloc(3 * slice * sizeof(float));
+	float *plane = memory_alloc(plane_bytes), *fields = malloc(3 * piece * sizeof(float));
 	bp_status status = plane && fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, plane_bytes);
 
 	if (!status)
 		status = default_terms_make(model->log_density, inverse, layers, &terms, error);
 	for (size_t f = 0; !status && f < 3; f++)
 		status = narrow_make(inverse, &terms, terms.start + f * d.phi_d, columns, plane, &narrow[f], error);
-	for (size_t i = 0; !status && i < h.theta_h; i++) {
+	const size_t rows = (size_t)h.theta_h * h.theta_d;
+	for (size_t r = 0; !status && r < rows; r += ROWS_STEP) {
 		const struct default_block block = {
-			.field = {fields, fields + slice, fields + 2 * slice},
-			.row = i * h.theta_d, .rows = h.theta_d, .width = h.phi_d, .stride = columns,
+			.field = {fields, fields + piece, fields + 2 * piece},
+			.row = r, .rows = rows - r < ROWS_STEP ? rows - r : ROWS_STEP, .width = h.phi_d, .stride = columns,
 		};
 		for (size_t f = 0; f < 3; f++)
-			kernels_get()->cosine_product(narrow[f].value + i * h.theta_d * narrow[f].stride, narrow[f].stride, h.theta_d, narrow[f].count,
-			                              narrow[f].matrix, columns, fields + f * slice, columns);
+			kernels_get()->cosine_product(narrow[f].value + r * narrow[f].stride, narrow[f].stride, block.rows, narrow[f].count, narrow[f].matrix,
+			                              columns, fields + f * piece, columns);
 		take(user, &block);
 	}
 	for (int f = 0; f < 3; f++) {
