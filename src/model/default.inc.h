@@ -206,19 +206,33 @@ static void KERNEL(default_rotate)(float *const x[3], size_t n, const float m[3]
 	}
 }
 
-static void KERNEL(default_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after,
-                                   float *scratch)
+static void KERNEL(default_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after)
 {
+	typedef KERNEL(floats8) vector;
 	const float *a = neighbour[0], *b = neighbour[1], *c = neighbour[2], *d = neighbour[3];
-	float *restrict copy = scratch + 1;
+	const size_t whole = n / 8 * 8;
 
-	for (size_t k = 0; k < n; k++)
-		copy[k] = x[k];
-	copy[-1] = before;
-	copy[n] = after;
-	for (size_t k = 0; k < n; k++) {
-		float mean = (4 * (copy[(ptrdiff_t)k - 1] + copy[k + 1]) + ((a[k] + b[k]) + (c[k] + d[k]))) * (1.0f / 12);
-		x[k] = copy[k] + filled[k] * (mean - copy[k]);
+	if (whole) {
+		/* What is left of the next vector is read before this one is written. */
+		vector here = FLOATS8_OF(x), left = __builtin_shufflevector((vector){before}, here, 0, 8, 9, 10, 11, 12, 13, 14);
+		for (size_t k = 0; k < whole; k += 8) {
+			const vector right = k + 8 < n ? FLOATS8_OF(x + k + 1) : __builtin_shufflevector(here, (vector){after}, 1, 2, 3, 4, 5, 6, 7, 8);
+			vector next = here, next_left = left;
+			if (k + 8 < whole) {
+				next = FLOATS8_OF(x + k + 8);
+				next_left = FLOATS8_OF(x + k + 7);
+			}
+			before = x[k + 7];
+			const vector sum = 4 * (left + right) + ((FLOATS8_OF(a + k) + FLOATS8_OF(b + k)) + (FLOATS8_OF(c + k) + FLOATS8_OF(d + k)));
+			FLOATS8_AT(x + k) = here + FLOATS8_OF(filled + k) * (sum * (1.0f / 12) - here);
+			here = next;
+			left = next_left;
+		}
+	}
+	for (size_t k = whole; k < n; k++) {
+		const float here = x[k], right = k + 1 < n ? x[k + 1] : after;
+		x[k] = here + filled[k] * ((4 * (before + right) + ((a[k] + b[k]) + (c[k] + d[k]))) * (1.0f / 12) - here);
+		before = here;
 	}
 }
 

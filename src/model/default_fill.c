@@ -20,7 +20,9 @@ enum {
 
 /* A piece of a row with invalid cells: a whole number of PIECEs long, but for the row's end. */
 struct run {
-	uint32_t row, first, count, filled; /* filled: where its marks begin */
+	uint32_t at, count, filled;  /* filled: where its marks begin */
+	int32_t neighbour[4];        /* how far away the same piece is in the rows around; mirrored at the table's ends */
+	int8_t first, last;          /* whether the row begins or ends here */
 };
 
 struct runs {
@@ -28,6 +30,16 @@ struct runs {
 	float *filled; /* 1 where a cell is to be filled, 0 where not */
 	uint32_t count;
 };
+
+static struct run run_at(struct lattice_dims d, uint32_t row, uint32_t column, uint32_t marks)
+{
+	const uint32_t i = row / d.theta_d, j = row % d.theta_d;
+	const int32_t p = (int32_t)d.phi_d, slice = (int32_t)(d.theta_d * d.phi_d);
+	return (struct run){
+		.at = row * d.phi_d + column, .filled = marks, .first = column == 0,
+		.neighbour = {j ? -p : p, j + 1 < d.theta_d ? p : -p, i ? -slice : slice, i + 1 < d.theta_h ? slice : -slice},
+	};
+}
 
 /* All of the table, in order; and present[row]: no cell is invalid. */
 static bp_status runs_make(struct lattice_dims d, const uint8_t *valid, uint8_t *present, struct runs *out, bp_error *error)
@@ -47,13 +59,15 @@ static bp_status runs_make(struct lattice_dims d, const uint8_t *valid, uint8_t 
 					continue;
 				}
 				if (!before && !counting)
-					out->run[n] = (struct run){(uint32_t)r, (uint32_t)k, 0, marks};
+					out->run[n] = run_at(d, (uint32_t)r, (uint32_t)k, marks);
 				n += !before;
 				before = 1;
 				for (size_t q = k; q < k + length && !counting; q++)
 					out->filled[marks + q - k] = row[q] ? 0 : 1;
-				if (!counting)
+				if (!counting) {
 					out->run[n - 1].count += (uint32_t)length;
+					out->run[n - 1].last = k + length == p;
+				}
 				marks += (uint32_t)length;
 			}
 		}
@@ -71,23 +85,16 @@ static bp_status runs_make(struct lattice_dims d, const uint8_t *valid, uint8_t 
 }
 
 /* One sweep over the runs, forwards or backwards; mirrored at the table's ends. */
-static void sweep(struct lattice_dims d, const struct runs *runs, int backwards, float *table, float *scratch)
+static void sweep(const struct runs *runs, int backwards, float *table)
 {
 	const struct kernels *kernels = kernels_get();
-	const ptrdiff_t p = d.phi_d, slice = (ptrdiff_t)d.theta_d * p;
 
 	for (uint32_t n = 0; n < runs->count; n++) {
 		const struct run *run = &runs->run[backwards ? runs->count - 1 - n : n];
-		const uint32_t i = run->row / d.theta_d, j = run->row % d.theta_d, end = run->first + run->count;
-		float *x = table + (size_t)run->row * d.phi_d + run->first;
-		const float *const neighbour[4] = {
-			j ? x - p : x + p,
-			j + 1 < d.theta_d ? x + p : x - p,
-			i ? x - slice : x + slice,
-			i + 1 < d.theta_h ? x + slice : x - slice,
-		};
-		kernels->default_smooth(x, runs->filled + run->filled, neighbour, run->count, run->first ? x[-1] : x[0],
-		                        end < d.phi_d ? x[run->count] : x[run->count - 1], scratch);
+		float *x = table + run->at;
+		const float *const neighbour[4] = {x + run->neighbour[0], x + run->neighbour[1], x + run->neighbour[2], x + run->neighbour[3]};
+		kernels->default_smooth(x, runs->filled + run->filled, neighbour, run->count, run->first ? x[0] : x[-1],
+		                        run->last ? x[run->count - 1] : x[run->count]);
 	}
 }
 
@@ -95,10 +102,9 @@ bp_status default_fill(struct lattice_dims d, const uint8_t *valid, float *const
 {
 	const size_t p = d.phi_d, rows = (size_t)d.theta_h * d.theta_d, slice = d.theta_d * p;
 	uint8_t *present = malloc(rows);
-	float *scratch = malloc((p + 2) * sizeof *scratch);
 	struct runs runs = {0};
 	struct fill *fill = NULL;
-	bp_status status = present && scratch ? fill_create(d.theta_d, d.phi_d, false, false, &fill, error) : error_memory(error, rows);
+	bp_status status = present ? fill_create(d.theta_d, d.phi_d, false, false, &fill, error) : error_memory(error, rows);
 
 	if (!status)
 		status = runs_make(d, valid, present, &runs, error);
@@ -110,12 +116,11 @@ bp_status default_fill(struct lattice_dims d, const uint8_t *valid, float *const
 			empty = table[c][i * slice]; /* a slice without a valid cell is flat */
 		}
 		for (int s = 0; s < SWEEPS; s++)
-			sweep(d, &runs, s % 2, table[c], scratch);
+			sweep(&runs, s % 2, table[c]);
 	}
 	fill_free(fill);
 	free(runs.run);
 	free(runs.filled);
 	free(present);
-	free(scratch);
 	return status;
 }

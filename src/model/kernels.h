@@ -173,9 +173,9 @@ struct kernels {
 	/*
 	 * A piece of a row of the fill: where filled = 1, a cell becomes the weighted mean of its six neighbours (phi_d counts four times:
 	 * along it the field is smoothest, and its basis has the fewest coefficients); where it is 0, it stays. Along phi_d the
-	 * neighbours are the old values, with one before and one after the piece; scratch holds n + 2.
+	 * neighbours are the old values, with one before and one after the piece.
 	 */
-	void (*default_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after, float *scratch);
+	void (*default_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after);
 	/*
 	 * x_q times max(0, 1 - threshold factor_q / e_q), e being the sum of the squares of the 3 x 3 coefficients around and, half as much
 	 * each, of the lanes before and after. square[r] + q + s stride: those of row r - 1 and column s - 1.
