@@ -15,6 +15,10 @@ struct KERNEL(fidelity_block) {
 	bool has_inverse, has_shifted_inverse;
 };
 
+struct KERNEL(fidelity_squares) {
+	lanes4 logs, cubes;
+};
+
 /* The first m cells of a block from the tables, the others made not to count. */
 static inline void KERNEL(fidelity_prepare)(const double *b, const uint8_t *valid, const float *cosine, size_t m,
                                             struct KERNEL(fidelity_block) *t)
@@ -56,37 +60,43 @@ static inline void KERNEL(fidelity_prepare)(const double *b, const uint8_t *vali
  *
  * Both are polynomials of least relative error on these ranges: 1e-15, 2e-15.
  */
-static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *d, double *logs, double *cubes)
+static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *difference, struct KERNEL(fidelity_squares) *to)
 {
+	lanes4 logs = {0, 0, 0, 0}, cubes = {0, 0, 0, 0};
+
 	if (!t->has_inverse)
 		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
 			t->inverse[l] = 1 / (t->near[l] > 0 ? t->b[l] : 1);
 	t->has_inverse = true;
-	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
-		double s = d[l] / (t->shifted[l] + t->shifted[l] + d[l]), z = s * s;
-		double p = 0.41286660545526166;
-		p = p * z + 0.57707758172130574;
-		p = p * z + 0.96179669401644918;
-		p = p * z + 2.8853900817779237;
-		logs[l] = s * p;
+	for (size_t l = 0; l < FIDELITY_BLOCK; l += 4) {
+		const lanes4 d = LANES_LOAD(difference + l), shifted = LANES_LOAD(t->shifted + l);
+		const lanes4 s = d / (shifted + shifted + d), z = s * s;
+		lanes4 p = z * LANES_ALL(0.41286660545526166) + LANES_ALL(0.57707758172130574);
+		p = p * z + LANES_ALL(0.96179669401644918);
+		p = p * z + LANES_ALL(2.8853900817779237);
+		p *= s;
+		logs += p * p;
+
+		/* Even and odd powers apart: half as long a chain. */
+		const lanes4 r = d * LANES_LOAD(t->inverse + l), q = r * r;
+		lanes4 even = q * LANES_ALL(0.013591770827014168) + LANES_ALL(0.019000804152989052);
+		lanes4 odd = q * LANES_ALL(-0.015937536993844745) - LANES_ALL(0.023471728782429886);
+		even = even * q + LANES_ALL(0.03017832700333542);
+		odd = odd * q - LANES_ALL(0.041152263703458002);
+		even = even * q + LANES_ALL(0.06172839506145647);
+		odd = odd * q - LANES_ALL(0.11111111111101468);
+		even = even * q + LANES_ALL(0.33333333333333337);
+		const lanes4 cube = (even + odd * r) * (r * LANES_LOAD(t->root + l));
+		cubes += cube * cube;
 	}
-	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
-		double r = d[l] * t->inverse[l];
-		double q = r * r; /* even and odd powers apart: half as long a chain */
-		double even = 0.013591770827014168, odd = -0.015937536993844745;
-		even = even * q + 0.019000804152989052;
-		odd = odd * q - 0.023471728782429886;
-		even = even * q + 0.03017832700333542;
-		odd = odd * q - 0.041152263703458002;
-		even = even * q + 0.06172839506145647;
-		odd = odd * q - 0.11111111111101468;
-		even = even * q + 0.33333333333333337;
-		cubes[l] = (even + odd * r) * (r * t->root[l]);
-	}
+	to->logs = logs;
+	to->cubes = cubes;
 }
 
-static inline void KERNEL(fidelity_far)(struct KERNEL(fidelity_block) *t, const double *e, double *logs, double *cubes)
+static inline void KERNEL(fidelity_far)(struct KERNEL(fidelity_block) *t, const double *e, struct KERNEL(fidelity_squares) *to)
 {
+	double logs[FIDELITY_BLOCK], cubes[FIDELITY_BLOCK];
+
 	if (!t->has_shifted_inverse)
 		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
 			t->shifted_inverse[l] = 1 / t->shifted[l];
@@ -95,17 +105,37 @@ static inline void KERNEL(fidelity_far)(struct KERNEL(fidelity_block) *t, const 
 		logs[l] = fast_log2((e[l] + 1e-3) * t->shifted_inverse[l]);
 	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
 		cubes[l] = fast_cbrt(e[l] * t->cosine[l]) - t->root[l];
+	*to = (struct KERNEL(fidelity_squares)){{0, 0, 0, 0}, {0, 0, 0, 0}};
+	for (size_t l = 0; l < FIDELITY_BLOCK; l += 4) {
+		const lanes4 x = LANES_LOAD(logs + l), y = LANES_LOAD(cubes + l);
+		to->logs += x * x;
+		to->cubes += y * y;
+	}
+}
+
+/* The largest |d|/(b + 1e-2), or `largest` if that is larger. */
+static inline double KERNEL(fidelity_largest)(const struct KERNEL(fidelity_block) *t, const double *d, double largest)
+{
+	uint64_t larger = 0;
+
+	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
+		larger |= (d[l] < 0 ? -d[l] : d[l]) > largest * t->offset[l];
+	if (larger) /* seldom: the division is worth a branch */
+		for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
+			const double relative = (d[l] < 0 ? -d[l] : d[l]) / t->offset[l];
+			largest = relative > largest ? relative : largest;
+		}
+	return largest;
 }
 
 /* Adds the block of one table, of which m cells are there. */
 static inline void KERNEL(fidelity_add)(struct KERNEL(fidelity_block) *t, const float *table, size_t m, double unit,
                                         struct fidelity_sums *sums)
 {
-	const double largest = sums->largest_relative;
-	double e[FIDELITY_BLOCK], d[FIDELITY_BLOCK], logs[FIDELITY_BLOCK], cubes[FIDELITY_BLOCK];
+	double e[FIDELITY_BLOCK], d[FIDELITY_BLOCK];
 	float padded[FIDELITY_BLOCK];
-	lanes4 log_squares = {0, 0, 0, 0}, cube_squares = {0, 0, 0, 0};
-	uint64_t larger = 0, far = 0;
+	struct KERNEL(fidelity_squares) squares;
+	uint64_t far = 0;
 
 	if (m < FIDELITY_BLOCK) {
 		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
@@ -115,29 +145,16 @@ static inline void KERNEL(fidelity_add)(struct KERNEL(fidelity_block) *t, const 
 	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
 		e[l] = unit * (double)table[l] * t->keep[l];
 		d[l] = e[l] - t->b[l];
-		const double size = d[l] < 0 ? -d[l] : d[l];
-		larger |= size > largest * t->offset[l];
-		far |= size > t->near[l];
+		far |= (d[l] < 0 ? -d[l] : d[l]) > t->near[l];
 	}
-	if (larger) { /* seldom: the division is worth a branch */
-		double found = largest;
-		for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
-			const double relative = (d[l] < 0 ? -d[l] : d[l]) / t->offset[l];
-			found = relative > found ? relative : found;
-		}
-		sums->largest_relative = found;
-	}
+	if (far || sums->largest_relative < 1.0 / 16) /* what is close is not larger */
+		sums->largest_relative = KERNEL(fidelity_largest)(t, d, sums->largest_relative);
 	if (far)
-		KERNEL(fidelity_far)(t, e, logs, cubes);
+		KERNEL(fidelity_far)(t, e, &squares);
 	else
-		KERNEL(fidelity_close)(t, d, logs, cubes);
-	for (size_t l = 0; l < FIDELITY_BLOCK; l += 4) {
-		const lanes4 x = LANES_LOAD(logs + l), y = LANES_LOAD(cubes + l);
-		log_squares += x * x;
-		cube_squares += y * y;
-	}
-	sums->log_squares += lanes_sum(&log_squares);
-	sums->cube_root_squares += lanes_sum(&cube_squares);
+		KERNEL(fidelity_close)(t, d, &squares);
+	sums->log_squares += lanes_sum(&squares.logs);
+	sums->cube_root_squares += lanes_sum(&squares.cubes);
 }
 
 static void KERNEL(fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n,
