@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../error.h"
 #include "kernels.h"
@@ -37,6 +38,19 @@ static bp_status design_alloc(size_t n, struct design *design, bp_error *error)
 		return error_memory(error, n * (2 * sizeof(double) + sizeof(float)));
 	/* Few observations are read through as quickly as an anchor is placed. */
 	return n < ANCHOR_WORTH ? BP_OK : robust_anchor_alloc(n / 6, &design->anchor, error);
+}
+
+static double largest_size(const double *v, size_t n)
+{
+	double largest[4] = {0}; /* apart, so that they are compared side by side */
+	size_t i = 0;
+
+	for (; i + 4 <= n; i += 4)
+		for (size_t l = 0; l < 4; l++)
+			largest[l] = fabs(v[i + l]) > largest[l] ? fabs(v[i + l]) : largest[l];
+	for (; i < n; i++)
+		largest[0] = fabs(v[i]) > largest[0] ? fabs(v[i]) : largest[0];
+	return fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
 }
 
 /* The exponent e with largest |v| in [2^(e-1), 2^e); 0 when all are 0. */
@@ -92,7 +106,7 @@ static void fit_unscale(struct robust_fit *fit, int x_exponent, int y_exponent)
 bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error)
 {
 	struct design design;
-	double *scaled = NULL, largest_x = 0, largest_y = 0;
+	double *scaled = NULL;
 
 	if (!n)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "robust regression: no observation");
@@ -108,12 +122,8 @@ bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_f
 		status = error_memory(error, n * sizeof *scaled);
 		goto out;
 	}
-	for (size_t i = 0; i < n; i++) {
-		largest_x = fmax(largest_x, fabs(x[i]));
-		largest_y = fmax(largest_y, fabs(y[i]));
-	}
-	design.x_exponent = exponent_of(largest_x);
-	const int y_exponent = exponent_of(largest_y);
+	design.x_exponent = exponent_of(largest_size(x, n));
+	const int y_exponent = exponent_of(largest_size(y, n));
 	const struct power p = power_of(-design.x_exponent), q = power_of(-y_exponent);
 	for (size_t i = 0; i < n; i++) {
 		design.x[i] = x[i] * p.a * p.b;
@@ -128,57 +138,61 @@ out:
 	return status;
 }
 
+/* The next run of valid cells behind *end: cells *start to *end - 1. False when there is none. */
+static bool run_next(const struct lattice *lattice, size_t *start, size_t *end)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	const uint8_t *valid = lattice->valid, *from = *end < cells ? memchr(valid + *end, 1, cells - *end) : NULL, *to;
+
+	if (!from)
+		return false;
+	to = memchr(from, 0, (size_t)(valid + cells - from));
+	*start = (size_t)(from - valid);
+	*end = to ? (size_t)(to - valid) : cells;
+	return true;
+}
+
 bp_status robust_fit_colour(const struct lattice *lattice, const float *achromatic, double unit, struct colour_fit out[3],
                             bp_error *error)
 {
-	const size_t cells = lattice_cells(lattice->dims), n = lattice->valid_count;
+	const size_t n = lattice->valid_count;
 	struct design design;
 	double *y = NULL;
-	float largest_x = 0;
+	size_t k = 0;
 
 	if (!n)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell");
 	bp_status status = design_alloc(n, &design, error);
 	if (status)
 		goto out;
-	y = malloc((n + 1) * sizeof *y);
+	y = malloc(n * sizeof *y);
 	if (!y) {
 		status = error_memory(error, n * sizeof *y);
 		goto out;
 	}
-	for (size_t i = 0; i < cells; i++) {
-		float v = lattice->valid[i] ? fabsf(achromatic[i]) : 0;
-		largest_x = v > largest_x ? v : largest_x;
-	}
-	const int float_exponent = exponent_of((double)largest_x);
+	for (size_t i = 0, end = 0; run_next(lattice, &i, &end);)
+		for (; i < end; i++)
+			design.x[k++] = (double)achromatic[i];
+	const int float_exponent = exponent_of(largest_size(design.x, n));
 	const struct power p = power_of(-float_exponent);
-	for (size_t i = 0, k = 0; i < cells && k < n; i++) {
-		design.x[k] = (double)achromatic[i] * p.a * p.b;
-		k += lattice->valid[i];
-	}
 	/* The unit enters by its exponent and mantissa, so that it may be of any size. */
 	int unit_exponent;
 	const double mantissa = frexp(unit, &unit_exponent);
 	design.x_exponent = float_exponent + unit_exponent;
-	for (size_t k = 0; k < n; k++)
-		design.x[k] *= mantissa;
+	for (k = 0; k < n; k++)
+		design.x[k] = design.x[k] * p.a * p.b * mantissa;
 	if (n > 1)
 		design_prepare(&design);
 	for (int c = 0; c < 3; c++) {
-		const double *b = lattice->rgb[c];
 		struct robust_fit fit = {0};
-		double largest = 0;
 
-		for (size_t i = 0; i < cells; i++) {
-			double v = lattice->valid[i] ? b[i] : 0;
-			largest = v > largest ? v : largest;
-		}
-		const int y_exponent = exponent_of(largest);
+		k = 0;
+		for (size_t i = 0, end = 0; run_next(lattice, &i, &end); k += end - i)
+			memcpy(y + k, lattice->rgb[c] + i, (end - i) * sizeof *y);
+		const int y_exponent = exponent_of(largest_size(y, n));
 		const struct power q = power_of(-y_exponent);
-		for (size_t i = 0, k = 0; i < cells; i++) {
-			y[k] = b[i] * q.a * q.b;
-			k += lattice->valid[i];
-		}
+		for (k = 0; k < n; k++)
+			y[k] = y[k] * q.a * q.b;
 		if (n == 1)
 			fit = (struct robust_fit){.intercept = y[0], .converged = true};
 		else
