@@ -114,6 +114,39 @@ static void levels_come_back_from_any_prefix_of_units(void **unused)
 		}
 }
 
+/* One harmonic with a lone level, another with the same in company; sizes of 0.9 steps. */
+static void a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays(void **unused)
+{
+	const struct lattice_dims d = {16, 16, 40};
+	const size_t cells = lattice_cells(d);
+	float *block = calloc(3 * cells, sizeof *block), *const field[3] = {block, block + cells, block + 2 * cells}, centre[2];
+	struct planes *planes = NULL;
+	(void)unused;
+
+	assert_int_equal(planes_create(d, 1, &planes, NULL), BP_OK);
+	field[0][(3 * 16 + 3) * 40 + 2] = 0.9f;
+	for (int y = 2; y < 5; y++)
+		for (int x = 2; x < 5; x++)
+			field[0][(y * 16 + x) * 40 + 15] = y == 3 && x == 3 ? -0.9f : 2.1f;
+	assert_int_equal(planes_quantise(planes, field, 1, 0.4f, centre), 2);
+	assert_int_equal(planes->levels_count, 3);
+	/* The company comes first in the pool. */
+	assert_int_equal(planes->levels[1].level[3 * 8 + 3], -1);
+	assert_int_equal(planes->levels[2].level[3 * 8 + 3], 1);
+	assert_int_equal(planes_thin(planes, 0.4f, centre), 2);
+	assert_int_equal(planes->levels[1].level[3 * 8 + 3], -1);
+	assert_int_equal(planes->levels[2].level[3 * 8 + 3], 0);
+	/* The centres are those of what is left, to the eight bits that are kept. */
+	assert_true(fabsf(centre[0] + 0.1f) < 0.003f && fabsf(centre[1] - 0.1f) < 0.003f);
+	/* Alone and nothing else: no plane is left. */
+	memset(block, 0, 3 * cells * sizeof *block);
+	field[2][(3 * 16 + 3) * 40 + 2] = 0.9f;
+	assert_int_equal(planes_quantise(planes, field, 1, 0.4f, centre), 1);
+	assert_int_equal(planes_thin(planes, 0.4f, centre), 0);
+	planes_free(planes);
+	free(block);
+}
+
 static void the_lowest_plane_is_that_of_the_last_unit_coded(void **unused)
 {
 	const uint32_t planes = 5, harmonics = 7;
@@ -226,6 +259,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(bands_cover_every_coefficient_once),
 		cmocka_unit_test(levels_come_back_from_any_prefix_of_units),
+		cmocka_unit_test(a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays),
 		cmocka_unit_test(the_lowest_plane_is_that_of_the_last_unit_coded),
 		cmocka_unit_test(arbitrary_bytes_decode_to_something_legal),
 		cmocka_unit_test(the_mixer_learns_what_a_bit_depends_on),

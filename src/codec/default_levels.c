@@ -23,12 +23,13 @@ struct quantiser {
 	uint32_t largest;
 };
 
-static uint32_t quantise(struct quantiser *q, float coefficient)
+static uint32_t quantise(struct quantiser *q, float coefficient, uint8_t *over)
 {
 	const float size = fabsf(coefficient) * q->inverse;
 	uint32_t level = (uint32_t)(size + q->rounding);
 	if (level >= 1u << DEFAULT_PLANES_MAX)
 		level = (1u << DEFAULT_PLANES_MAX) - 1;
+	*over = (uint8_t)fminf(256 * (size + q->rounding - (float)level), 255);
 	if (level) {
 		q->excess[level > 1] += (double)(size - (float)level);
 		q->count[level > 1]++;
@@ -38,7 +39,8 @@ static uint32_t quantise(struct quantiser *q, float coefficient)
 }
 
 /* Puts a level that is not 0 where its block is, and notes how many planes the block and its band need. */
-static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, int32_t level)
+static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, int32_t level,
+                        uint8_t over)
 {
 	const size_t block0 = (size_t)(harmonic + 2) * p->bands.blocks, own = block0 + band->block_at - band->block_stride - 1;
 	const size_t at = block0 + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
@@ -48,9 +50,10 @@ static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, con
 
 	if (!*slot) {
 		*slot = p->levels_count++;
-		memset(p->levels[*slot], 0, sizeof *p->levels);
+		memset(&p->levels[*slot], 0, sizeof *p->levels);
 	}
-	p->levels[*slot][y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE] = level;
+	p->levels[*slot].level[y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE] = level;
+	p->levels[*slot].over[y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE] = over;
 	top[at] = top[at] < bits ? bits : top[at];
 	top[own] = top[own] < bits ? bits : top[own];
 }
@@ -77,10 +80,11 @@ uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float st
 							lane += 15;
 							continue;
 						}
-						const uint32_t level = quantise(&q, row[lane]);
+						uint8_t over;
+						const uint32_t level = quantise(&q, row[lane], &over);
 						const uint32_t harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
 						if (level)
-							level_place(p, f, harmonic, band, y, x, row[lane] < 0 ? -(int32_t)level : (int32_t)level);
+							level_place(p, f, harmonic, band, y, x, row[lane] < 0 ? -(int32_t)level : (int32_t)level, over);
 					}
 				}
 		}

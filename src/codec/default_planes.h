@@ -19,6 +19,12 @@ struct plane_block {
 	uint8_t sign[BLOCK_CELLS];   /* 0: the level is 0 so far, 1: positive, 2: negative */
 };
 
+/* Encoder: the levels of one block, and where in its interval the coefficient lies: 256 (size / step + rounding - |level|). */
+struct level_block {
+	int32_t level[BLOCK_CELLS];
+	uint8_t over[BLOCK_CELLS];
+};
+
 /*
  * Most blocks never hold a level. Those that do have a place in a pool, in the order in which they were met, so that what is worked on
  * lies close together whatever the lattice's size.
@@ -35,7 +41,7 @@ struct planes {
 	/* Encoder only: the levels, in a pool of their own, and, per block, the planes that its largest one needs. */
 	uint32_t *level_slot[3];
 	uint8_t *top[3];
-	int32_t (*levels)[BLOCK_CELLS];
+	struct level_block *levels;
 	uint32_t levels_count;
 	struct plane_contexts *contexts;
 	void *block; /* the one allocation behind the arrays but for the pools */
@@ -52,6 +58,12 @@ void planes_start(struct planes *planes, uint32_t count);
  * centre[0], centre[1]: the mean of |coefficient|/step - |level| over levels of 1 and over larger ones.
  */
 uint32_t planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding, float centre[2]);
+
+/*
+ * default_thin.c: levels of 1 with little around them become 0, the less there is the larger they may be: they cost most to place. After
+ * planes_quantise with the same rounding; returns the planes that are left, and the centres.
+ */
+uint32_t planes_thin(struct planes *planes, float rounding, float centre[2]);
 
 static inline uint32_t planes_units(const struct planes *planes)
 {

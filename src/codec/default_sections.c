@@ -27,7 +27,8 @@ static const uint32_t PREVIEWS[] = { 4096, 16384, 65536, 262144, 1048576 };
 enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
 enum { FORESEEABLE = 2000 }; /* bytes of the higher planes below which too little is known to foresee the rest */
-static const float ROUNDING = 0.3f;      /* a level is rounded down up to 0.7: what is rare costs more than it is worth */
+static const float ROUNDING = 0.4f;      /* a level is rounded down up to 0.6: what is rare costs more than it is worth */
+static const double RATE_ROUNDING = 0.3; /* what default_rate was measured with; thinned levels are about as many */
 static const float CENTRE_BELOW = 0.4f;  /* where a level lies whose lower planes are missing, as a share of them */
 
 /* ---- encoding ---- */
@@ -83,7 +84,8 @@ static bp_status encode_once(struct encoding *e, const struct search *search, in
 	uint32_t unit = 0, units;
 
 	encoding_clear(e);
-	planes_start(e->planes, planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING, e->centre));
+	planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING, e->centre);
+	planes_start(e->planes, planes_thin(e->planes, ROUNDING, e->centre));
 	units = planes_units(e->planes);
 	e->foreseen = 0;
 	*complete = 1;
@@ -116,7 +118,7 @@ static bp_status encode_once(struct encoding *e, const struct search *search, in
 			if (plane > 0 && plane < RATE_PLANES)
 				taken[plane] = (double)(now - e->head_bytes);
 			if (plane == 1 && unit < units && planes_unit_plane(e->planes, unit) == 0 && search && taken[2] > FORESEEABLE) {
-				e->foreseen = rate_foresee(&e->rate, (double)e->step, (double)ROUNDING, taken);
+				e->foreseen = rate_foresee(&e->rate, (double)e->step, RATE_ROUNDING, taken);
 				e->wanted = e->foreseen * e->bias;
 				if (e->wanted < search->low * room || e->wanted > search->high * room) {
 					*complete = 0;
@@ -141,7 +143,7 @@ static bp_status encode_once(struct encoding *e, const struct search *search, in
 static bp_status step_search(struct encoding *e, struct lattice_dims d, int effort, bp_error *error)
 {
 	const struct search search = search_for(effort);
-	const double room = (double)e->limit[e->layers - 1] - (double)e->head_bytes, rounding = (double)ROUNDING;
+	const double room = (double)e->limit[e->layers - 1] - (double)e->head_bytes, rounding = RATE_ROUNDING;
 	double per_bit = e->model->noisy ? 1.3 : 1.03; /* bits by the coder for each that rate_bits tells */
 	float fitting = 0; /* the step that filled the record best */
 	uint64_t most = 0;

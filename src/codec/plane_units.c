@@ -157,7 +157,7 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 		const uint32_t s = band->parent_shift, edge = s ? BLOCK_EDGE / 2 : 0;
 		v->parent = pool[u->slot[above->block_at + (by >> s) * above->block_stride + (bx >> s)]].known + (by & 1) * edge * BLOCK_EDGE + (bx & 1) * edge;
 	}
-	v->level = decode ? NULL : p->levels[p->level_slot[u->field][(size_t)(u->harmonic + 2) * p->bands.blocks + at]];
+	v->level = decode ? NULL : p->levels[p->level_slot[u->field][(size_t)(u->harmonic + 2) * p->bands.blocks + at]].level;
 }
 
 static INLINE void block_scatter(const struct block_view *v, struct plane_block *own)
