@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Faults that a build survives: faults.py BRDFPACK SHIM [--long]. SHIM is fault_shim.c as a library.
+"""Faults that a build survives: faults.py BRDFPACK SHIM [--long] [--kills FOLDER]. SHIM is fault_shim.c as a library.
+
+--kills: only kills, 200 of them, of builds of the MERL files of FOLDER.
 
 Builds of small materials are killed, interrupted, starved of disk and memory, and have their calls fail. After
 each, the output must be the old archive or the new one, whole; the exit code 0 only with the new one; and after
@@ -21,6 +23,7 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOOL, SHIM = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 LONG = "--long" in sys.argv
+KILLS = os.path.abspath(sys.argv[sys.argv.index("--kills") + 1]) if "--kills" in sys.argv else None
 random.seed(1)
 failures = []
 
@@ -40,18 +43,18 @@ def read(path):
 
 
 class Place:
-    """A folder with inputs and an output folder that holds an older archive."""
+    """A folder with inputs, small ones unless there are others, and an output folder that holds an older archive."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, inputs=None):
         self.out = folder + "/out"
-        self.inputs = folder + "/in"
+        self.inputs = inputs or folder + "/in"
         self.target = self.out + "/out.bpk"
         os.mkdir(self.out)
-        os.mkdir(self.inputs)
-        for n in range(4):
-            fixtures.write("%s/material-%d.binary" % (self.inputs, n), fixtures.table(n + 1))
-        one = self.inputs + "/material-0.binary"
-        self.run([one])
+        if not inputs:
+            os.mkdir(self.inputs)
+            for n in range(4):
+                fixtures.write("%s/material-%d.binary" % (self.inputs, n), fixtures.table(n + 1))
+        self.run([self.inputs + "/" + min(os.listdir(self.inputs))])
         self.old = read(self.target)
         self.run([self.inputs])
         self.new = read(self.target)
@@ -157,6 +160,34 @@ def full_disk(place):
             fault("a disk with %d bytes left: exit code 0" % size)
         place.check("a disk with %d bytes left" % size, code)
     print("full disk: %d sizes up to %d bytes" % (len(sizes), max(sizes)), flush=True)
+
+
+def full_tmpfs(place):
+    """A real file system without room: pages for the old archive and so many more, or no inode for another file."""
+    def mount(options):
+        return subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", place.out], stderr=subprocess.DEVNULL).returncode == 0
+    if os.geteuid() != 0 or not mount("size=1m"):
+        print("full tmpfs: not run, mounting is not allowed", flush=True)
+        return
+    subprocess.run(["umount", place.out], check=True)
+    page, failed = 4096, 0
+    pages = [-(-len(data) // page) for data in (place.old, place.new)]
+    cases = ["size=%d" % (page * (pages[0] + n)) for n in range(pages[1] + 3)] + ["size=1m,nr_inodes=2"]
+    for options in cases:
+        if not mount(options):
+            fault("cannot mount with " + options)
+            continue
+        try:
+            place.reset()
+            code = subprocess.run(place.command(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60).returncode
+            failed += code != 0
+            subprocess.run(["mount", "-o", "remount,size=1m,nr_inodes=100", place.out], check=True)
+            place.check("a tmpfs with " + options, code)
+        finally:
+            subprocess.run(["umount", place.out], check=True)
+    if not 0 < failed < len(cases):
+        fault("full tmpfs: %d of %d builds failed" % (failed, len(cases)))
+    print("full tmpfs: %d sizes and no inode left, %d builds failed as they should" % (len(cases) - 1, failed), flush=True)
 
 
 def shimmed(command, kind, at, always=False):
@@ -276,12 +307,14 @@ def recovery(folder):
 
 
 with tempfile.TemporaryDirectory(prefix="brdfpack-faults-") as scratch:
-    here = Place(scratch)
-    kills(here, 200 if LONG else 40)
-    full_disk(here)
-    two_builds(here, 20 if LONG else 4)
-    failing_calls(here)
-    failing_reads(here, scratch)
-    recovery(scratch)
+    here = Place(scratch, KILLS)
+    kills(here, 200 if LONG or KILLS else 40)
+    if not KILLS:
+        full_disk(here)
+        full_tmpfs(here)
+        two_builds(here, 20 if LONG else 4)
+        failing_calls(here)
+        failing_reads(here, scratch)
+        recovery(scratch)
 print("%d faults" % len(failures))
 sys.exit(1 if failures else 0)

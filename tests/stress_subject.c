@@ -54,7 +54,7 @@ size_t packed_bad_values(const struct packed_table *packed)
 	return bad;
 }
 
-void packed_to_lattice(const struct packed_table *packed, struct lattice *out)
+void packed_to_lattice(const struct packed_table *packed, bool whole, struct lattice *out)
 {
 	const size_t cells = lattice_cells(packed->head.dims);
 	uint8_t *below = malloc(cells);
@@ -64,7 +64,7 @@ void packed_to_lattice(const struct packed_table *packed, struct lattice *out)
 		exit(1);
 	for (size_t c = 0; c < 3; c++)
 		for (size_t i = 0; i < cells; i++)
-			out->rgb[c][i] = below[i] ? -1 : packed->value[c * cells + i];
+			out->rgb[c][i] = !whole && below[i] ? -1 : packed->value[c * cells + i];
 	free(below);
 	lattice_validate(out);
 }

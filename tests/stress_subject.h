@@ -22,8 +22,8 @@ void packed_free(struct packed_table *packed);
 /* Values that are negative, NaN or infinite. */
 size_t packed_bad_values(const struct packed_table *packed);
 
-/* What extraction gives: the decoded table, cells below the horizon invalid. */
-void packed_to_lattice(const struct packed_table *packed, struct lattice *out);
+/* The decoded table: the whole of it, or as it is extracted, cells below the horizon invalid. */
+void packed_to_lattice(const struct packed_table *packed, bool whole, struct lattice *out);
 
 /*
  * Writes the records (ascending names) as an archive, verifies it deeply, loads every material in both forms with
