@@ -57,7 +57,7 @@ struct subject {
 };
 static const struct subject SUBJECTS[] = {
 	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 1e-6, 2, 70, 80, 70, 80, 1e-12, 1e-7, 1e-6}, {70, 80, 70, 80}},
-	{"default", PROFILE_DEFAULT, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 0, 2, 0.1, 1, 10, 30, 1e-12, 1e-7, 1e-6}, {40, 50, 40, 50}},
+	{"default", PROFILE_DEFAULT, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 0, 2, 0.1, 1, 10, 30, 1e-12, 1e-7, 1e-6}, {120, 120, 120, 120}},
 };
 static const struct {
 	enum profile profile;

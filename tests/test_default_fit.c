@@ -150,6 +150,26 @@ static void units_of_degenerate_tables_are_as_documented(void **unused)
 	assert_true(fabs(unit_of(half, 100) / (4 * 0x1p-12 / 100) - 1) < 1e-15);
 }
 
+/* Nothing else is known of the table: one cell in its last slice decodes to itself everywhere. */
+static void a_single_valid_cell_is_the_whole_table(void **unused)
+{
+	struct lattice lattice;
+	struct expansion table;
+	const size_t cells = lattice_cells(DIMS);
+	(void)unused;
+	assert_int_equal(lattice_alloc(DIMS, &lattice, NULL), BP_OK);
+	for (int c = 0; c < 3; c++)
+		for (size_t n = 0; n < cells; n++)
+			lattice.rgb[c][n] = n == cells - 1 ? 0.1 * (c + 1) : -1;
+	lattice_validate(&lattice);
+	decoded(&lattice, &table);
+	for (int c = 0; c < 3; c++)
+		for (size_t n = 0; n < cells; n++)
+			assert_true(fabs(table.unit * (double)table.rgb[c][n] / (0.1 * (c + 1)) - 1) < 1e-5);
+	expansion_free(&table);
+	lattice_free(&lattice);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -157,6 +177,7 @@ int main(void)
 		cmocka_unit_test(channels_may_change_places),
 		cmocka_unit_test(the_unit_is_a_hundredth_of_the_middle),
 		cmocka_unit_test(units_of_degenerate_tables_are_as_documented),
+		cmocka_unit_test(a_single_valid_cell_is_the_whole_table),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
