@@ -110,14 +110,19 @@ static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t ha
 		for (uint32_t bx = 0; bx < band->block_columns; bx++) {
 			const uint32_t place = slot[by * band->block_stride + bx];
 			const struct plane_block *block = &p->pool[place];
-			for (uint32_t k = 0; place && k < BLOCK_CELLS; k++) {
-				const int32_t size = (int32_t)(block->known[k] >> 2 >> lowest << lowest);
-				if (!size)
-					continue;
-				const size_t row = (size_t)(band->row + by * BLOCK_EDGE + k / BLOCK_EDGE) * p->dims.theta_d + band->column + bx * BLOCK_EDGE + k % BLOCK_EDGE;
-				if (n < room)
-					out[n] = (struct default_level){.at = (uint32_t)(field0 + row * p->dims.phi_d), .level = block->sign[k] == 2 ? -size : size};
-				n++;
+			for (uint32_t y = 0; place && y < BLOCK_EDGE; y++) {
+				const size_t row = (size_t)(band->row + by * BLOCK_EDGE + y) * p->dims.theta_d + band->column + bx * BLOCK_EDGE;
+				uint64_t any;
+				memcpy(&any, block->sign + y * BLOCK_EDGE, sizeof any);
+				for (uint32_t x = 0; any && x < BLOCK_EDGE; x++) {
+					const uint32_t k = y * BLOCK_EDGE + x;
+					const int32_t size = (int32_t)(block->known[k] >> 2 >> lowest << lowest);
+					if (!size)
+						continue;
+					if (n < room)
+						out[n] = (struct default_level){.at = (uint32_t)(field0 + (row + x) * p->dims.phi_d), .level = block->sign[k] == 2 ? -size : size};
+					n++;
+				}
 			}
 		}
 	return n;
