@@ -129,7 +129,7 @@ job_bench() {
 	check "benchmark program" "$logs/bench-make.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" build/test/bench/brdfpack-bench &&
 		check "benchmarks" "$logs/bench.log" tests/bench.sh build/test
 }
-job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" FUZZ_SECONDS=6 fuzz; }
+job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" FUZZ_SECONDS=12 fuzz; }
 
 for job in $jobs; do
 	before=$passed
