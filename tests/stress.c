@@ -56,8 +56,8 @@ struct subject {
 	double binding[4]; /* limits of the four columns of generations at the smaller budgets, which bind */
 };
 static const struct subject SUBJECTS[] = {
-	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 1e-6, 2, 70, 80, 70, 80, 1e-12, 1e-7, 1e-6}, {70, 80, 70, 80}},
-	{"default", PROFILE_DEFAULT, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 0, 2, 0.1, 1, 10, 30, 1e-12, 1e-7, 1e-6}, {120, 120, 120, 120}},
+	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 1e-6, 2, 70, 80, 70, 80, 1e-12, 1e-12, 1e-9}, {70, 80, 70, 80}},
+	{"default", PROFILE_DEFAULT, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 0, 2, 0.1, 1, 10, 30, 1e-12, 1e-12, 1e-9}, {120, 120, 120, 120}},
 };
 static const struct {
 	enum profile profile;
@@ -70,10 +70,10 @@ static const struct {
 	/* Ranges beyond single precision: the coefficients' rounding errors are what is lost. */
 	{PROFILE_DEFAULT, "bright-cell", GENERATION, 10},
 	{PROFILE_DEFAULT, "bright-cell", GENERATIONS, 30},
-	{PROFILE_DEFAULT, "checkerboard", GENERATION, 3},
-	{PROFILE_DEFAULT, "checkerboard", GENERATIONS, 3},
-	{PROFILE_DEFAULT, "odd-channel", GENERATION, 3},
-	{PROFILE_DEFAULT, "odd-channel", GENERATIONS, 15},
+	{PROFILE_DEFAULT, "checkerboard", GENERATION, 10},
+	{PROFILE_DEFAULT, "checkerboard", GENERATIONS, 10},
+	{PROFILE_DEFAULT, "odd-channel", GENERATION, 10},
+	{PROFILE_DEFAULT, "odd-channel", GENERATIONS, 30},
 };
 
 static double limit_of(const struct subject *subject, uint32_t budget, const char *kind, enum property property)

@@ -324,7 +324,7 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 		skip();
 	make_line(0.3, 1.7, 0.1);
 	add_outliers(0.3, 50);
-	static float excess[N];
+	static double excess[N];
 	static double a[N + 1], b[N + 1];
 	for (size_t i = 0; i < N; i++)
 		excess[i] = (float)(1e-3 * uniform());

@@ -12,7 +12,7 @@
 
 enum { N = 20011 }; /* not a multiple of a block or of a vector */
 static double xs[N], ys[N];
-static float excess[N];
+static double excess[N];
 static const struct robust_sample SAMPLE = {xs, ys, excess, N};
 
 static uint64_t state;

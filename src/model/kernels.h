@@ -32,7 +32,7 @@ struct fidelity_table {
 /* Observations of one regression; see robust.h. excess = 1/sqrt(1 - leverage) - 1. */
 struct robust_sample {
 	const double *x, *y;
-	const float *excess;
+	const double *excess;
 	size_t n;
 };
 
@@ -58,7 +58,7 @@ struct anchor_reach {
 /* Copies of some observations: `capacity` places, of which `count` are taken. */
 struct anchor_list {
 	double *x, *y;
-	float *excess;
+	double *excess;
 	size_t count, capacity;
 };
 

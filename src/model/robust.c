@@ -35,7 +35,7 @@ static bp_status design_alloc(size_t n, struct design *design, bp_error *error)
 	design->picked = malloc((2 * robust_picks(n) + 1) * sizeof *design->picked);
 	design->picked_excess = malloc((robust_picks(n) + 1) * sizeof *design->picked_excess);
 	if (!design->x || !design->excess || !design->inside || !design->picked || !design->picked_excess)
-		return error_memory(error, n * (2 * sizeof(double) + sizeof(float)));
+		return error_memory(error, n * 3 * sizeof(double));
 	/* Few observations are read through as quickly as an anchor is placed. */
 	return n < ANCHOR_WORTH ? BP_OK : robust_anchor_alloc(n / 6, &design->anchor, error);
 }
@@ -91,7 +91,7 @@ static void design_prepare(struct design *design)
 	const double inverse = design->sxx > 0 ? 1 / design->sxx : 0, mean = design->mean_x, base = 1 - 1 / n, least = 1 - LEVERAGE_MAX;
 	for (size_t i = 0; i < design->n; i++) {
 		double d = x[i] - mean, rest = base - d * d * inverse;
-		design->excess[i] = (float)(1 / sqrt(rest < least ? least : rest) - 1);
+		design->excess[i] = 1 / sqrt(rest < least ? least : rest) - 1;
 	}
 }
 

@@ -46,7 +46,7 @@ struct robust_fit {
 
 /*
  * n >= 1 finite observations. One observation: intercept y, slope 0. BP_ERROR_ARGUMENT for n = 0,
- * BP_ERROR_MEMORY. Takes 20 n bytes of its own (28 n while it runs). Deterministic.
+ * BP_ERROR_MEMORY. Takes 24 n bytes of its own (32 n while it runs). Deterministic.
  */
 bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error);
 

@@ -6,7 +6,7 @@ static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const str
                                    double *inside, size_t *below)
 {
 	const double *x = sample->x, *y = sample->y;
-	const float *excess = sample->excess;
+	const double *excess = sample->excess;
 	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), b = LANES_ALL(line->slope);
 	const lanes4 lo = LANES_ALL(low), hi = LANES_ALL(high);
 	const mask4 sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
@@ -18,7 +18,7 @@ static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const str
 		mask4 any = {0, 0, 0, 0};
 		for (int g = 0; g < ROBUST_GROUP / 4; g++) {
 			const size_t at = i + 4 * (size_t)g;
-			lanes4 f = __builtin_convertvector(FLOATS_LOAD(excess + at), lanes4);
+			lanes4 f = LANES_LOAD(excess + at);
 			lanes4 v = (LANES_LOAD(y + at) - c) - b * (LANES_LOAD(x + at) - xo);
 			v = v + v * f;
 			v = (lanes4)((mask4)v & sign);
@@ -36,7 +36,7 @@ static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const str
 	*below = (size_t)-(less[0] + less[1] + less[2] + less[3]);
 	for (size_t i = n4; i < sample->n; i++) {
 		double v = (y[i] - line->centre_y) - line->slope * (x[i] - line->centre_x);
-		v = v + v * (double)excess[i];
+		v = v + v * excess[i];
 		v = v < 0 ? -v : v;
 		*below += v < low;
 		inside[count] = v;
@@ -64,13 +64,13 @@ static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct
 	for (size_t start = 0; start < sample->n; start += ROBUST_BLOCK) {
 		size_t m = sample->n - start < ROBUST_BLOCK ? sample->n - start : ROBUST_BLOCK;
 		const double *x = sample->x + start, *y = sample->y + start;
-		const float *excess = sample->excess + start;
+		const double *excess = sample->excess + start;
 		lanes4 s0 = zero, s1 = zero, s2 = zero, s3 = zero, s4 = zero, s5 = zero;
 		size_t i = 0;
 
 		for (; i + 4 <= m; i += 4) {
 			lanes4 dx = LANES_LOAD(x + i) - xo, dy = LANES_LOAD(y + i) - c;
-			lanes4 r = dy - b * dx, f = __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
+			lanes4 r = dy - b * dx, f = LANES_LOAD(excess + i);
 			lanes4 u = (r + r * f) * scale, q = one - u * u;
 			mask4 kept = (mask4)(q > zero);
 			rejected += (mask4)(q <= zero); /* true is -1 */
@@ -85,7 +85,7 @@ static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct
 		}
 		for (int l = 0; i < m; i++, l++) { /* the last few, one lane each */
 			double dx = x[i] - line->centre_x, r = (y[i] - line->centre_y) - line->slope * dx;
-			double u = (r + r * (double)excess[i]) * inverse_scale, q = 1 - u * u;
+			double u = (r + r * excess[i]) * inverse_scale, q = 1 - u * u;
 			rejected[l] -= q <= 0;
 			q = q > 0 ? q : 0;
 			double w = q * q, wx = w * dx;

@@ -28,7 +28,7 @@ bp_status robust_anchor_alloc(size_t capacity, struct robust_anchor *out, bp_err
 	if (list_alloc(capacity, &out->near) && list_alloc(capacity, &out->edge))
 		return BP_OK;
 	robust_anchor_free(out);
-	return error_memory(error, 2 * capacity * (2 * sizeof(double) + sizeof(float)));
+	return error_memory(error, 2 * capacity * 3 * sizeof(double));
 }
 
 void robust_anchor_free(struct robust_anchor *anchor)

@@ -47,7 +47,7 @@ ANCHOR_SWEEP(anchor_fourth_high, 4, 3, 2, 1)
 #undef ANCHOR_SWEEP
 
 /* Copies the observations of one group that are flagged to the list, which has room. */
-static inline void KERNEL(anchor_copy)(struct anchor_list *list, const double *x, const double *y, const float *excess,
+static inline void KERNEL(anchor_copy)(struct anchor_list *list, const double *x, const double *y, const double *excess,
                                        const int64_t *flag)
 {
 	size_t count = list->count;
@@ -89,9 +89,9 @@ static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const stru
 	for (size_t start = 0; start < sample->n; start += ANCHOR_BLOCK) {
 		const size_t m = sample->n - start < ANCHOR_BLOCK ? sample->n - start : ANCHOR_BLOCK;
 		const double *x = sample->x + start, *y = sample->y + start;
-		const float *excess = sample->excess + start;
+		const double *excess = sample->excess + start;
 		double padded[2][ANCHOR_BLOCK];
-		float padded_excess[ANCHOR_BLOCK];
+		double padded_excess[ANCHOR_BLOCK];
 
 		if (near_list->count + ANCHOR_BLOCK > near_list->capacity || edge_list->count + ANCHOR_BLOCK > edge_list->capacity)
 			return false;
@@ -112,7 +112,7 @@ static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const stru
 			for (size_t g = 0; g < ANCHOR_GROUP; g += 4) {
 				const size_t i = group + g;
 				const lanes4 t = LANES_LOAD(x + i) - xo, r = (LANES_LOAD(y + i) - c) - s * t;
-				const lanes4 l = one + __builtin_convertvector(FLOATS_LOAD(excess + i), lanes4);
+				const lanes4 l = one + LANES_LOAD(excess + i);
 				const lanes4 v = (lanes4)((mask4)r & sign) * l;
 				const lanes4 q = (reach_y + reach_slope * (lanes4)((mask4)t & sign)) * l;
 				const lanes4 most = v + q, least = v - q;
