@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "../error.h"
+#include "../model/fast_math.h"
 #include "default_rate.h"
 
 enum { FORESEEABLE = 2000 }; /* bytes of the higher planes below which too little is known to foresee the rest */
@@ -18,8 +19,8 @@ struct search {
 static struct search search_for(int effort)
 {
 	static const struct search searches[9] = {
-		{0.991, 1.25, 1.10, 2}, {0.991, 1.15, 1.06, 3}, {0.991, 1.10, 1.04, 3}, {0.991, 1.06, 1.02, 4}, {0.991, 1.04, 1.013, 5},
-		{0.991, 1.03, 1.01, 5}, {0.994, 1.02, 1.007, 6}, {0.996, 1.012, 1.004, 8}, {0.998, 1.008, 1.003, 10},
+		{0.991, 1.25, 1.10, 2}, {0.991, 1.15, 1.06, 3}, {0.991, 1.10, 1.04, 3}, {0.991, 1.06, 1.02, 4}, {0.991, 1.03, 1.01, 5},
+		{0.991, 1.02, 1.007, 5}, {0.994, 1.016, 1.006, 6}, {0.996, 1.012, 1.004, 8}, {0.998, 1.008, 1.003, 10},
 	};
 	return searches[effort < 1 ? 0 : effort > 9 ? 8 : effort - 1];
 }
@@ -28,7 +29,7 @@ static struct search search_for(int effort)
 struct attempt {
 	const struct search *search; /* NULL: code all units, whatever they take */
 	const struct rate *rate;
-	double bias;           /* what was wanted for each byte foreseen in the last attempt that was complete; 1 before */
+	double bias;           /* what was wanted for each byte foreseen in the last attempt that was complete */
 	double room;           /* bytes */
 	double taken[RATE_PLANES]; /* at the ends of planes */
 	double foreseen;       /* what all units will take, foreseen before the lowest plane; 0 where it was not */
@@ -120,8 +121,10 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	const struct search search = search_for(effort);
 	const uint32_t limit = e->limit[e->layers - 1];
 	struct rate rate;
-	struct attempt a = { .rate = &rate, .bias = 1, .room = (double)limit - (double)e->head_bytes };
-	double per_bit = e->model->noisy ? 1.3 : 1.03; /* bits by the coder for each that rate_bits tells */
+	const bool noisy = e->model->noisy;
+	const double room = (double)limit - (double)e->head_bytes;
+	struct attempt a = { .rate = &rate, .room = room, .bias = noisy ? 0.97 : 1 /* noise leaves more levels that stand alone */ };
+	double bits = search.aim * room * 8 / (noisy ? 1.18 : 0.99); /* by rate_bits; the coder takes so many for each */
 	float fitting = 0; /* the step that filled the record best */
 	uint64_t most = 0;
 
@@ -130,12 +133,12 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	for (int n = 0; n < search.attempts; n++) {
 		/* A record whose last unit left a gap is filled by a slightly finer step; the gaps of small records are wide. */
 		const double finer = n > 0 && a.complete && fitting == e->step ? 1 + 0.004 * n : 1;
-		e->step = (float)rate_step(&rate, finer * search.aim * a.room * 8 / per_bit, RATE_ROUNDING, (double)least);
+		e->step = (float)rate_step(&rate, finer * bits, RATE_ROUNDING, (double)least);
 		a.search = n + 1 < search.attempts ? &search : NULL;
 		bp_status status = encode_once(e, &a, error);
 		if (status)
 			return status;
-		const double ratio = a.wanted / a.room;
+		const double ratio = a.wanted / room;
 		const bool full = (double)e->bytes >= 0.991 * (double)limit;
 		if (a.complete && ((full && ratio >= search.low && ratio <= search.high) || (ratio < 1 && e->step <= least)))
 			return BP_OK;
@@ -145,8 +148,9 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 			fitting = e->step;
 			most = e->bytes;
 		}
-		const double told = rate_bits(&rate, (double)e->step, RATE_ROUNDING, 0);
-		per_bit = fmin(fmax(told > 0 ? a.wanted * 8 / told : per_bit, 0.1), 10);
+		/* Where the guess was far off, the bytes change more than rate_bits does. */
+		const double factor = ratio > 0 ? fast_exp2(0.9 * fast_log2(search.aim / ratio)) : 16;
+		bits = fmax(rate_bits(&rate, (double)e->step, RATE_ROUNDING, 0), 1) * fmin(fmax(factor, 1.0 / 16), 16);
 	}
 	/* Not met: a record that is cut off early is better than one that is not full. */
 	if (fitting > 0 && e->step != fitting) {
