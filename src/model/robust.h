@@ -21,8 +21,8 @@
  * On measured materials the slope, which a few bright cells decide, often creeps on for hundreds of iterations; the
  * limit of 100 then ends it before it converges, here as in GSL. Converging faster by extrapolation was tried: it ends
  * at other fixed points than the plain iteration, also where that converges, so each step is the plain one. A few materials
- * amplify rounding errors on the way: of 27 regressions on surrogates, three end 1e-4 apart in the slope when only the order
- * of additions differs.
+ * amplify rounding errors on the way: of 27 regressions on surrogates, three end 1e-5 to 1e-3 apart in the slope when only the
+ * order of additions differs.
  *
  * Per iteration the observations are read twice and copied never: the median is found by counting what lies
  * below a bracket around the expected median and collecting the few inside it. Where the line moves little, one
