@@ -230,7 +230,7 @@ typedef struct bp_loaded {
 
 /*
  * Loads material `index` of the archive; options NULL: as if zeroed. The caller frees *out. Several threads
- * may load from one archive at once. Beside the result it needs 12 bytes per cell while it works.
+ * may load from one archive at once. Beside the result it needs at most 12 bytes per cell while it works.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an unknown form or colour, sampling neither 0 nor 1, max_log_rmse negative
  * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
  */

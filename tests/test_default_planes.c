@@ -79,7 +79,8 @@ static void levels_come_back_from_any_prefix_of_units(void **unused)
 			coefficients_make(d, one_in, field);
 			assert_int_equal(planes_create(d, 1, &in, NULL), BP_OK);
 			assert_int_equal(planes_create(d, 0, &out, NULL), BP_OK);
-			planes_start(in, planes_quantise(in, field, 1, 0, centre));
+			planes_quantise(in, field, 1, 0);
+			planes_start(in, planes_settle(in, 0, false, centre));
 			const uint32_t units = planes_units(in), end = units - units / 5;
 			range_encoder_start(&encoder, &bytes);
 			for (uint32_t u = 0; u < end; u++)
@@ -128,12 +129,13 @@ static void a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays
 	for (int y = 2; y < 5; y++)
 		for (int x = 2; x < 5; x++)
 			field[0][(y * 16 + x) * 40 + 15] = y == 3 && x == 3 ? -0.9f : 2.1f;
-	assert_int_equal(planes_quantise(planes, field, 1, 0.4f, centre), 2);
+	planes_quantise(planes, field, 1, 0.4f);
+	assert_int_equal(planes_settle(planes, 0.4f, false, centre), 2);
 	assert_int_equal(planes->levels_count, 3);
 	/* The company comes first in the pool. */
 	assert_int_equal(planes->levels[1].level[3 * 8 + 3], -1);
 	assert_int_equal(planes->levels[2].level[3 * 8 + 3], 1);
-	assert_int_equal(planes_thin(planes, 0.4f, centre), 2);
+	assert_int_equal(planes_settle(planes, 0.4f, true, centre), 2);
 	assert_int_equal(planes->levels[1].level[3 * 8 + 3], -1);
 	assert_int_equal(planes->levels[2].level[3 * 8 + 3], 0);
 	/* The centres are those of what is left, to the eight bits that are kept. */
@@ -141,8 +143,9 @@ static void a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays
 	/* Alone and nothing else: no plane is left. */
 	memset(block, 0, 3 * cells * sizeof *block);
 	field[2][(3 * 16 + 3) * 40 + 2] = 0.9f;
-	assert_int_equal(planes_quantise(planes, field, 1, 0.4f, centre), 1);
-	assert_int_equal(planes_thin(planes, 0.4f, centre), 0);
+	planes_quantise(planes, field, 1, 0.4f);
+	assert_int_equal(planes_settle(planes, 0.4f, false, centre), 1);
+	assert_int_equal(planes_settle(planes, 0.4f, true, centre), 0);
 	planes_free(planes);
 	free(block);
 }

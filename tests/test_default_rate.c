@@ -91,8 +91,8 @@ static void the_bytes_of_all_planes_are_foreseen_before_the_lowest(void **state)
 		struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
 		double taken[RATE_PLANES] = {0};
 		float centre[2];
-		planes_quantise(planes, model->coefficient, step, 0.4f, centre);
-		planes_start(planes, planes_thin(planes, 0.4f, centre));
+		planes_quantise(planes, model->coefficient, step, 0.4f);
+		planes_start(planes, planes_settle(planes, 0.4f, true, centre));
 		range_encoder_start(&encoder, &bytes);
 		for (uint32_t unit = 0; unit < planes_units(planes); unit++) {
 			const uint32_t plane = planes_unit_plane(planes, unit);

@@ -55,8 +55,8 @@ static void the_exponentials_keep_their_bounds(void **user)
 	}
 	assert_true(fast_exp2(-5000) == DBL_MIN);
 	assert_true(fast_exp2(5000) == 0x1p1023);
-	assert_true(fast_exp2f(-500) == FLT_MIN);
-	assert_true(fast_exp2f(500) == 0x1p127f);
+	for (int e = -126; e <= 127; e++)
+		assert_true(fast_exp2f((float)e) == (float)ldexp(1, e));
 	for (int e = -1022; e <= 1023; e++)
 		assert_true(fast_exp2(e) == ldexp(1, e));
 }

@@ -4,13 +4,7 @@
 #include "merl/demo.h"
 #include "merl/lattice.h"
 #include "model/model.h"
-
-static bp_status record_bytes_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (const uint8_t *)user + offset, count);
-	return BP_OK;
-}
+#include "packed_fixture.h"
 
 static void a_preview_holds_every_second_corner(void **state)
 {
@@ -27,14 +21,7 @@ static void a_preview_holds_every_second_corner(void **state)
 		uint8_t *record = NULL;
 		size_t bytes;
 		bp_error error;
-		assert_int_equal(lattice_alloc(dims, &lattice, NULL), BP_OK);
-		for (uint32_t i = 0; i < dims.theta_h; i++)
-			for (uint32_t j = 0; j < dims.theta_d; j++)
-				for (uint32_t k = 0; k < dims.phi_d; k++)
-					for (int c = 0; c < 3; c++)
-						lattice.rgb[c][lattice_index(dims, i, j, k)] =
-							0.1 * (c + 1) + 3 * exp(-0.02 * i * i) * (1 + 0.01 * j * cos(2 * M_PI * k / dims.phi_d) + 0.02 * c * j);
-		lattice_validate(&lattice);
+		glossy_lattice_make(dims, 1, &lattice);
 		if (record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, &error))
 			fail_msg("%s", error.message);
 		for (uint32_t layers = 1; layers <= head.layer_count; layers++) {

@@ -11,16 +11,7 @@
 
 #include "model/kernels.h"
 #include "model/spectrum_inverse.h"
-
-static uint64_t state = 5;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
-
-static const struct lattice_dims DIMS[] = {{4, 4, 4}, {5, 7, 9}, {15, 16, 5}, {16, 15, 6}, {31, 33, 7}, {29, 18, 33}, {90, 30, 20}, {4, 60, 17}};
-enum { DIMS_COUNT = sizeof DIMS / sizeof *DIMS };
+#include "random_tables.h"
 
 /* All terms of a spectrum that are not 0, by harmonic. */
 static struct spectrum_term *terms_of(const struct spectrum_inverse *inverse, const float *spectrum, uint32_t *start)

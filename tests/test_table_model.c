@@ -11,13 +11,7 @@
 
 #include "codec/record.h"
 #include "model/evaluate.h"
-
-static bp_status record_bytes_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (const uint8_t *)user + offset, count);
-	return BP_OK;
-}
+#include "packed_fixture.h"
 
 static void directions(int n, float wi[3], float wo[3])
 {
@@ -36,14 +30,7 @@ static struct model *model_make(enum profile profile, struct lattice_dims dims, 
 	struct model *model = NULL;
 	uint8_t *record = NULL;
 	size_t bytes;
-	assert_int_equal(lattice_alloc(dims, &lattice, NULL), BP_OK);
-	for (uint32_t i = 0; i < dims.theta_h; i++)
-		for (uint32_t j = 0; j < dims.theta_d; j++)
-			for (uint32_t k = 0; k < dims.phi_d; k++)
-				for (int c = 0; c < 3; c++)
-					lattice.rgb[c][lattice_index(dims, i, j, k)] =
-						unit * (0.1 * (c + 1) + 3 * exp(-0.02 * i * i) * (1 + 0.01 * j * cos(2 * M_PI * k / dims.phi_d) + 0.02 * c * j));
-	lattice_validate(&lattice);
+	glossy_lattice_make(dims, unit, &lattice);
 	assert_int_equal(record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, NULL), BP_OK);
 	assert_int_equal(record_decode(&head, 0, record_bytes_fetch, record, &model, NULL), BP_OK);
 	lattice_free(&lattice);

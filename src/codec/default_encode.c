@@ -102,8 +102,8 @@ static bp_status encode_once(struct encoding *e, struct attempt *a, bp_error *er
 	uint32_t unit = 0;
 
 	encoding_clear(e);
-	planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING, e->centre);
-	planes_start(e->planes, planes_thin(e->planes, ROUNDING, e->centre));
+	planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING);
+	planes_start(e->planes, planes_settle(e->planes, ROUNDING, true, e->centre));
 	a->foreseen = 0;
 	a->complete = true;
 	e->bytes = e->head_bytes;

@@ -16,60 +16,36 @@ static inline int any_above(const float *x, uint32_t least_bits)
 	return any != 0;
 }
 
-struct quantiser {
-	float inverse, rounding;
-	double excess[2];
-	uint64_t count[2];
-	uint32_t largest;
-};
-
-static uint32_t quantise(struct quantiser *q, float coefficient, uint8_t *over)
+/* The coefficient's level, where it is not 0, in its block. */
+static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, float coefficient,
+                        float inverse, float rounding)
 {
-	const float size = fabsf(coefficient) * q->inverse;
-	uint32_t level = (uint32_t)(size + q->rounding);
-	if (level >= 1u << DEFAULT_PLANES_MAX)
-		level = (1u << DEFAULT_PLANES_MAX) - 1;
-	*over = (uint8_t)fminf(256 * (size + q->rounding - (float)level), 255);
-	if (level) {
-		q->excess[level > 1] += (double)(size - (float)level);
-		q->count[level > 1]++;
-		q->largest |= level;
-	}
-	return level;
-}
+	const size_t at = (size_t)(harmonic + 2) * p->bands.blocks + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
+	const uint32_t place = y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE, most = (1u << DEFAULT_PLANES_MAX) - 1;
+	const float size = fabsf(coefficient) * inverse;
+	uint32_t level = (uint32_t)(size + rounding), *slot = &p->level_slot[field][at];
 
-/* Puts a level that is not 0 where its block is, and notes how many planes the block and its band need. */
-static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, int32_t level,
-                        uint8_t over)
-{
-	const size_t block0 = (size_t)(harmonic + 2) * p->bands.blocks, own = block0 + band->block_at - band->block_stride - 1;
-	const size_t at = block0 + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
-	const uint8_t bits = (uint8_t)(32 - __builtin_clz((uint32_t)abs(level)));
-	uint32_t *slot = &p->level_slot[field][at];
-	uint8_t *top = p->top[field];
-
+	if (!level)
+		return;
+	level = level < most ? level : most;
 	if (!*slot) {
 		*slot = p->levels_count++;
 		memset(&p->levels[*slot], 0, sizeof *p->levels);
 	}
-	p->levels[*slot].level[y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE] = level;
-	p->levels[*slot].over[y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE] = over;
-	top[at] = top[at] < bits ? bits : top[at];
-	top[own] = top[own] < bits ? bits : top[own];
+	p->levels[*slot].level[place] = coefficient < 0 ? -(int32_t)level : (int32_t)level;
+	p->levels[*slot].over[place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
 }
 
-uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding, float centre[2])
+void planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding)
 {
 	const uint32_t lanes = p->dims.phi_d, even = (lanes + 1) / 2;
-	struct quantiser q = {.inverse = 1 / step, .rounding = rounding};
-	const float least = (1 - rounding) * step * 0.999f;
-	uint32_t least_bits, planes = 0;
+	const float least = (1 - rounding) * step * 0.999f, inverse = 1 / step;
+	uint32_t least_bits;
 
 	memcpy(&least_bits, &least, sizeof least_bits);
 	p->levels_count = 1;
 	for (uint32_t f = 0; f < 3; f++) {
 		memset(p->level_slot[f], 0, (size_t)(lanes + 4) * p->bands.blocks * sizeof *p->level_slot[f]);
-		memset(p->top[f], 0, (size_t)(lanes + 4) * p->bands.blocks);
 		for (uint32_t b = 0; b < p->bands.count; b++) {
 			const struct band *band = &p->bands.band[b];
 			for (uint32_t y = 0; y < band->rows; y++)
@@ -80,20 +56,11 @@ uint32_t planes_quantise(struct planes *p, float *const coefficient[3], float st
 							lane += 15;
 							continue;
 						}
-						uint8_t over;
-						const uint32_t level = quantise(&q, row[lane], &over);
-						const uint32_t harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
-						if (level)
-							level_place(p, f, harmonic, band, y, x, row[lane] < 0 ? -(int32_t)level : (int32_t)level, over);
+						level_place(p, f, lane < even ? 2 * lane : 2 * (lane - even) + 1, band, y, x, row[lane], inverse, rounding);
 					}
 				}
 		}
 	}
-	while (q.largest >> planes)
-		planes++;
-	for (int s = 0; s < 2; s++)
-		centre[s] = q.count[s] ? (float)(q.excess[s] / (double)q.count[s]) : 0;
-	return planes;
 }
 
 /* Counts the levels of one band of one harmonic and stores the first `room` of them. */

@@ -53,17 +53,15 @@ void planes_free(struct planes *planes); /* NULL is allowed */
 /* Forgets everything coded; `count` planes, 0..DEFAULT_PLANES_MAX, are to come. */
 void planes_start(struct planes *planes, uint32_t count);
 
-/*
- * Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign; returns the number of planes.
- * centre[0], centre[1]: the mean of |coefficient|/step - |level| over levels of 1 and over larger ones.
- */
-uint32_t planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding, float centre[2]);
+/* Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign. planes_settle must follow. */
+void planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding);
 
 /*
- * default_thin.c: levels of 1 with little around them become 0, the less there is the larger they may be: they cost most to place. After
- * planes_quantise with the same rounding; returns the planes that are left, and the centres.
+ * default_settle.c: counts the planes that the levels need and returns them; `thin`: levels of 1 with little around them become 0 before, the
+ * less there is the larger they may be, as they cost most to place. `rounding` is that of planes_quantise.
+ * centre[0], centre[1]: the mean of |coefficient|/step - |level| over levels of 1 and over larger ones, to 1/256.
  */
-uint32_t planes_thin(struct planes *planes, float rounding, float centre[2]);
+uint32_t planes_settle(struct planes *planes, float rounding, bool thin, float centre[2]);
 
 static inline uint32_t planes_units(const struct planes *planes)
 {

@@ -73,7 +73,7 @@ double rate_step(const struct rate *rate, double bits, double rounding, double l
 
 double rate_foresee(const struct rate *rate, double step, double rounding, const double taken[RATE_PLANES])
 {
-	/* A regression over surrogates at three steps each, and what planes_thin takes from the lowest plane: standard deviation 1.5 %. */
+	/* A regression over surrogates at three steps each, and what thinning takes from the lowest plane: standard deviation 1.5 %. */
 	const double gain = fast_log2(rate_bits(rate, step, rounding, 0) / rate_bits(rate, step, rounding, 1));
 	const double last = fast_log2(rate_bits(rate, step, rounding, 1) / rate_bits(rate, step, rounding, 2));
 	const double drift = fast_log2(taken[1] / taken[2]) - last;

@@ -99,7 +99,7 @@ static inline __attribute__((always_inline)) void KERNEL(channel_values)(const f
 		int32_t l = (int32_t)bits_of_float(base + (rotation[0] * a[k] + rotation[1] * b[k] + rotation[2] * d[k]));
 		l = l < 0 ? 0 : l;
 		l = l > limit ? limit : l;
-		out[k] = fast_exp2f_within(float_of_bits((uint32_t)l)) - 1;
+		out[k] = fast_exp2f(float_of_bits((uint32_t)l)) - 1;
 	}
 }
 

@@ -53,16 +53,10 @@ static inline float quarter_turns_polynomial(float q)
 	       ((QUARTER_TURNS_3 * q + QUARTER_TURNS_2) * q2 + (QUARTER_TURNS_1 * q + QUARTER_TURNS_0));
 }
 
-/* (2/pi) atan2(y, x) for x, y >= 0, in [0, 1]; 0 for (0, 0). */
-static inline float quarter_turns(float y, float x)
-{
-	float low = y > x ? x : y, high = y > x ? y : x;
-	float t = low / (high > FLT_MIN ? high : FLT_MIN), q = t * t;
-	float a = quarter_turns_polynomial(q) * t;
-	return fabsf((y > x ? 1.0f : 0.0f) - a); /* 1 - a or a, without a branch */
-}
-
-/* The same from y^2 and x^2, times `scale`: the square root runs beside the polynomial, not before the division. */
+/*
+ * scale (2/pi) atan2(sqrt(y), sqrt(x)) for x, y >= 0; 0 for (0, 0). From squares, so that the root runs beside the polynomial, not
+ * before the division.
+ */
 static inline float quarter_turns_of_squares(float y, float x, float scale)
 {
 	float low = y > x ? x : y, high = y > x ? y : x;

@@ -194,11 +194,6 @@ size_t table_bytes(const struct table *table)
 	return sizeof *table + table->store_bytes;
 }
 
-struct lattice_dims table_dims(const struct table *table)
-{
-	return table->dims;
-}
-
 void table_evaluate(const struct table *table, const float wi[3], const float wo[3], float rgb[3])
 {
 	table->kernels.evaluate(table, wi, wo, rgb);

@@ -36,7 +36,6 @@ bp_status table_build(const struct expansion *expansion, enum table_form form, i
 bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error);
 void table_free(struct table *table); /* NULL is allowed */
 size_t table_bytes(const struct table *table);
-struct lattice_dims table_dims(const struct table *table);
 
 /*
  * The value for one pair of directions in 1/sr, finite and >= 0 in each channel.

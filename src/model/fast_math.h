@@ -109,19 +109,12 @@ static inline double fast_exp2(double x)
  * 2^x for float x in [-126, 127]. Relative error at most 2e-7; 1 for 0. x = n + f, |f| <= 1/2; 2^f = 1 + f q(f), q the polynomial
  * through (2^f - 1)/f at six Chebyshev nodes (1e-8), its pairs of terms side by side: one after the other they would wait for each other.
  */
-static inline float fast_exp2f_within(float x)
+static inline float fast_exp2f(float x)
 {
 	float shifted = x + 12582912.0f; /* 1.5 2^23 */
 	float f = x - (shifted - 12582912.0f), z = f * f;
 	float q = (0.693147182f + 0.240226507f * f) + z * ((0.0555035695f + 0.00961808302f * f) + z * (0.00133908633f + 0.000154531634f * f));
 	return (1 + f * q) * float_of_bits((bits_of_float(shifted) + 127) << 23);
-}
-
-/* The same, x clamped to [-126, 127]. */
-static inline float fast_exp2f(float x)
-{
-	x = x < -126 ? -126 : x;
-	return fast_exp2f_within(x > 127 ? 127 : x);
 }
 
 /*

@@ -65,14 +65,4 @@ static inline uint16_t table_encode(float value)
 	return (uint16_t)(code < 1 << 10 ? 0 : code);
 }
 
-/* The value again, exactly. */
-static inline float table_decode(uint16_t code)
-{
-	union {
-		uint32_t bits;
-		float value;
-	} u = {(uint32_t)code << 13};
-	return u.value * 0x1p64f;
-}
-
 #endif
