@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../error.h"
+#include "../memory.h"
 #include "plane_contexts.h"
 
 bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **out, bp_error *error)
@@ -18,11 +19,11 @@ bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **o
 	const size_t bytes = 3 * blocks * (encoder ? 10 : 5);
 	unsigned char *at = p->block = calloc(bytes, 1);
 	/*
-	 * Room for all there can be: pages that are never touched cost nothing. Not calloc: a worker's memory has been in use before,
-	 * and 100 MB would be zeroed for every material. Who takes a place zeroes it.
+	 * Room for all there can be: pages that are never touched cost nothing, and those that are come in huge ones. Not calloc: a
+	 * worker's memory has been in use before, and 100 MB would be zeroed for every material. Who takes a place zeroes it.
 	 */
-	p->pool = malloc(slots * sizeof *p->pool);
-	p->levels = encoder ? malloc(slots * sizeof *p->levels) : NULL;
+	p->pool = memory_alloc(slots * sizeof *p->pool);
+	p->levels = encoder ? memory_alloc(slots * sizeof *p->levels) : NULL;
 	p->contexts = malloc(sizeof *p->contexts);
 	if (!at || !p->pool || (encoder && !p->levels) || !p->contexts) {
 		planes_free(p);
