@@ -249,10 +249,11 @@ static void contexts_stay_probabilities_whatever_they_see(void **unused)
 	(void)unused;
 	for (uint32_t bit = 0; bit < 2; bit++)
 		for (uint32_t seen = 0; seen <= MIXER_SEEN_MAX_ALONE; seen++)
-			for (uint32_t p = 0; p < 1u << MIXER_PROBABILITY_BITS; p += p < 300 || p > (1u << MIXER_PROBABILITY_BITS) - 300 ? 1 : 4001) {
-				mixer_context context = p << 10 | seen;
-				mixer_context_learn(tables, &context, bit, 250);
-				assert_true(bit ? context >> 10 >= p : context >> 10 <= p);
+			for (uint32_t p = 1; p < 1u << MIXER_PROBABILITY_BITS; p += p < 300 || p > (1u << MIXER_PROBABILITY_BITS) - 300 ? 1 : 4001) {
+				const uint32_t rate = tables->rate[seen], other = (1u << MIXER_PROBABILITY_BITS) - p;
+				const mixer_context context = mixer_context_learnt(tables, p << 10 | seen, bit, 250);
+				assert_int_equal(context >> 10, bit ? p + other / 64 * rate / 1024 : p - p / 64 * rate / 1024);
+				assert_true(context >> 10 > 0);
 				assert_int_equal(context & 1023, seen < 250 ? seen + 1 : seen);
 			}
 }

@@ -42,12 +42,13 @@ struct mixed_coder {
 	const struct mixer_tables *tables;
 };
 
-static inline void mixer_context_learn(const struct mixer_tables *tables, mixer_context *context, uint32_t bit, uint32_t limit)
+/* p + floor((2^22 - p) / 64) rate / 1024 or p - floor(p / 64) rate / 1024, both where p stands in the context; p is never 0. */
+static inline mixer_context mixer_context_learnt(const struct mixer_tables *tables, mixer_context state, uint32_t bit, uint32_t limit)
 {
-	const uint32_t seen = *context & 1023, p = *context >> 10;
-	const uint32_t rate = tables->rate[seen];
-	const uint32_t learnt = bit ? p + (((1u << MIXER_PROBABILITY_BITS) - p) >> 6) * rate / 1024 : p - (p >> 6) * rate / 1024;
-	*context = learnt << 10 | (seen + (seen < limit));
+	const uint32_t seen = state & 1023, rate = tables->rate[seen], more = seen < limit;
+	if (bit)
+		return state + (((seen - state) >> 16) * rate & ~UINT32_C(1023)) + more;
+	return state - ((state >> 16) * rate & ~UINT32_C(1023)) + more;
 }
 
 /* One bit of which q / 65536 is the probability of being 1; a certainty is not believed. */
@@ -62,17 +63,19 @@ static inline uint32_t mixed_bit_with(struct mixed_coder *coder, int decode, uin
 
 static inline uint32_t mixed_bit_alone(struct mixed_coder *coder, int decode, mixer_context *context, uint32_t bit)
 {
-	bit = mixed_bit_with(coder, decode, *context >> 16, bit);
-	mixer_context_learn(coder->tables, context, bit, MIXER_SEEN_MAX_ALONE);
+	const mixer_context state = *context;
+	bit = mixed_bit_with(coder, decode, state >> 16, bit);
+	*context = mixer_context_learnt(coder->tables, state, bit, MIXER_SEEN_MAX_ALONE);
 	return bit;
 }
 
 /* One bit by the average of two contexts, not the same. */
 static inline uint32_t mixed_bit_pair(struct mixed_coder *coder, int decode, mixer_context *first, mixer_context *second, uint32_t bit)
 {
-	bit = mixed_bit_with(coder, decode, ((*first >> 10) + (*second >> 10)) >> 7, bit);
-	mixer_context_learn(coder->tables, first, bit, MIXER_SEEN_MAX_PAIR);
-	mixer_context_learn(coder->tables, second, bit, MIXER_SEEN_MAX_PAIR);
+	const mixer_context a = *first, b = *second;
+	bit = mixed_bit_with(coder, decode, ((a >> 10) + (b >> 10)) >> 7, bit);
+	*first = mixer_context_learnt(coder->tables, a, bit, MIXER_SEEN_MAX_PAIR);
+	*second = mixer_context_learnt(coder->tables, b, bit, MIXER_SEEN_MAX_PAIR);
 	return bit;
 }
 
@@ -82,10 +85,10 @@ static inline uint32_t mixed_bit(struct mixed_coder *coder, int decode, mixer_co
 {
 	const struct mixer_tables *tables = coder->tables;
 	const mixer_words state = {*context[0], *context[1], *context[2], *context[3]};
-	const mixer_lanes input = {tables->stretch[state[0] >> 20], tables->stretch[state[1] >> 20], tables->stretch[state[2] >> 20],
-	                           tables->stretch[state[3] >> 20]};
-	const mixer_words rate = {tables->rate[state[0] & 1023], tables->rate[state[1] & 1023], tables->rate[state[2] & 1023],
-	                          tables->rate[state[3] & 1023]};
+	const mixer_lanes input = {tables->stretch[*context[0] >> 20], tables->stretch[*context[1] >> 20], tables->stretch[*context[2] >> 20],
+	                           tables->stretch[*context[3] >> 20]};
+	const mixer_words rate = {tables->rate[*context[0] & 1023], tables->rate[*context[1] & 1023], tables->rate[*context[2] & 1023],
+	                          tables->rate[*context[3] & 1023]};
 	mixer_lanes w;
 
 	memcpy(&w, weights->w, sizeof w);
@@ -100,12 +103,11 @@ static inline uint32_t mixed_bit(struct mixed_coder *coder, int decode, mixer_co
 	w = (w & ~(high | low)) | (high & MIXER_WEIGHT_MAX) | (low & -MIXER_WEIGHT_MAX);
 	memcpy(weights->w, &w, sizeof w);
 
-	/* mixer_context_learn of all four: towards 2^22 where the bit is 1, towards 0 where it is 0. */
+	/* mixer_context_learnt of all four: towards 2^22 where the bit is 1, towards 0 where it is 0. */
 	const uint32_t zero = bit - 1;
-	const mixer_words p = state >> 10, seen = state & 1023;
-	const mixer_words step = ((((1u << MIXER_PROBABILITY_BITS) - p) & ~zero) | (p & zero)) >> 6;
-	const mixer_words move = step * rate >> 10;
-	const mixer_words learnt = (p + ((move ^ zero) - zero)) << 10 | (seen - (mixer_words)(seen < MIXER_SEEN_MAX));
+	const mixer_words seen = state & 1023, step = (((seen - state) & ~zero) | (state & zero)) >> 16;
+	const mixer_words move = step * rate & ~UINT32_C(1023);
+	const mixer_words learnt = state + ((move ^ zero) - zero) - (mixer_words)((mixer_lanes)seen < MIXER_SEEN_MAX);
 	for (int i = 0; i < MIXER_INPUTS; i++)
 		*context[i] = learnt[i];
 	return bit;

@@ -13,11 +13,16 @@
 
 enum { BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
 
-/* What is known of the levels of one block, row by row; 0 behind the band's end. */
+/*
+ * What is known of the levels of one block, row by row; 0 behind the band's end. What stands for a neighbour's contexts comes first: it
+ * is read far more often than the rest.
+ */
 struct plane_block {
-	uint32_t known[BLOCK_CELLS]; /* 4 |level| as far as it is known, with half of the last known plane added */
+	uint16_t near[BLOCK_CELLS];  /* known / 2^p, p being the plane last coded here; at most NEAR_MOST */
 	uint8_t sign[BLOCK_CELLS];   /* 0: the level is 0 so far, 1: positive, 2: negative */
+	uint32_t known[BLOCK_CELLS]; /* 4 |level| as far as it is known, with half of the last known plane added */
 };
+enum { NEAR_MOST = 2047 }; /* more is as much: the largest size of all sums begins at 646, and half of a sum counts as well */
 
 /* Encoder: the levels of one block, and where in its interval the coefficient lies: 256 (size / step + rounding - |level|). */
 struct level_block {

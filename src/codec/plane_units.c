@@ -23,10 +23,24 @@ static INLINE uint32_t harmonic_class(uint32_t m)
 }
 
 /* 0: zero, 1: less than one and a half times the plane's value, 2: more. */
-static INLINE uint32_t tier(uint32_t known, uint32_t plane)
+static INLINE uint32_t tier(uint32_t near)
 {
-	return (uint32_t)(known != 0) + (uint32_t)(known >> plane >= 6);
+	return (uint32_t)(near != 0) + (uint32_t)(near >= 6);
 }
+
+/* One row of a block in units of the plane's value. Comparisons are of signed numbers, which every processor has; no single value needs the sign. */
+typedef uint16_t cells8 __attribute__((vector_size(2 * BLOCK_EDGE)));
+typedef int16_t signed8 __attribute__((vector_size(2 * BLOCK_EDGE)));
+
+static INLINE cells8 cells_load(const uint16_t *from)
+{
+	cells8 v;
+	memcpy(&v, from, sizeof v);
+	return v;
+}
+
+/* 1 where v >= least, else 0: subtracted, as what is true is -1. */
+#define CELLS_FROM(v, least) (-(cells8)((signed8)(v) > (int16_t)((least) - 1)))
 
 /* Where one unit works. */
 struct place {
@@ -39,20 +53,23 @@ struct place {
 	uint32_t *slot;                /* of this field and harmonic */
 	uint8_t *active;
 	const uint32_t *other_slot[2]; /* the other fields' */
+	uint32_t other_behind[2];      /* 1 where that field's plane is still to be coded, else 0 */
 	const uint32_t *first_slot;
 	const uint8_t *first_active, *second_active; /* of fields 0 and 1, for fields after them */
 };
 
 /*
  * The block at hand with a ring of its neighbours' cells, cell (y, x) at [y + 1][x + 1], and the blocks at the same place in
- * other harmonics and fields. Lanes behind the band's end are 0.
+ * other harmonics and fields. Lanes behind the band's end are 0. All in units of this plane's value: what was last coded in the plane
+ * above counts twice.
  */
 enum { VIEW_STRIDE = 16 };
 struct block_view {
-	uint32_t known[BLOCK_EDGE + 2][VIEW_STRIDE];
+	uint16_t near[BLOCK_EDGE + 2][VIEW_STRIDE];
 	uint8_t sign[BLOCK_EDGE + 2][VIEW_STRIDE];
 	const struct plane_block *before2, *before, *after, *after2, *other[2], *first;
-	const uint32_t *parent; /* of cell (0, 0) */
+	const uint16_t *parent; /* of cell (0, 0) */
+	uint32_t *known;        /* the block's own */
 	const int32_t *level;   /* encoder only */
 	uint32_t parent_shift, orientation, band;
 };
@@ -117,27 +134,29 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 {
 	const struct planes *p = u->planes;
 	const struct band *band = &p->bands.band[b];
-	const struct plane_block *pool = p->pool;
+	struct plane_block *pool = p->pool;
 	const uint32_t *slot = u->slot + at;
 	const ptrdiff_t row = band->block_stride, next = (ptrdiff_t)u->blocks;
-	const struct plane_block *own = pool + slot[0], *left = pool + slot[-1], *right = pool + slot[1];
-	const struct plane_block *up = pool + slot[-row], *down = pool + slot[row];
+	struct plane_block *own = pool + slot[0];
+	const struct plane_block *left = pool + slot[-1], *right = pool + slot[1], *up = pool + slot[-row], *down = pool + slot[row];
 	enum { LAST = BLOCK_EDGE - 1, LAST_ROW = BLOCK_EDGE * LAST };
 
-	v->known[0][0] = pool[slot[-row - 1]].known[BLOCK_CELLS - 1];
-	v->known[0][BLOCK_EDGE + 1] = pool[slot[-row + 1]].known[LAST_ROW];
-	v->known[BLOCK_EDGE + 1][0] = pool[slot[row - 1]].known[LAST];
-	v->known[BLOCK_EDGE + 1][BLOCK_EDGE + 1] = pool[slot[row + 1]].known[0];
-	memcpy(&v->known[0][1], up->known + LAST_ROW, BLOCK_EDGE * sizeof(uint32_t));
+	v->near[0][0] = pool[slot[-row - 1]].near[BLOCK_CELLS - 1];
+	v->near[0][BLOCK_EDGE + 1] = pool[slot[-row + 1]].near[LAST_ROW];
+	v->near[BLOCK_EDGE + 1][0] = (uint16_t)(2 * pool[slot[row - 1]].near[LAST]);
+	v->near[BLOCK_EDGE + 1][BLOCK_EDGE + 1] = (uint16_t)(2 * pool[slot[row + 1]].near[0]);
+	memcpy(&v->near[0][1], up->near + LAST_ROW, sizeof(cells8));
 	memcpy(&v->sign[0][1], up->sign + LAST_ROW, BLOCK_EDGE);
-	memcpy(&v->known[BLOCK_EDGE + 1][1], down->known, BLOCK_EDGE * sizeof(uint32_t));
+	const cells8 below = 2 * cells_load(down->near);
+	memcpy(&v->near[BLOCK_EDGE + 1][1], &below, sizeof below);
 	memcpy(&v->sign[BLOCK_EDGE + 1][1], down->sign, BLOCK_EDGE);
 	for (uint32_t y = 0; y < BLOCK_EDGE; y++) {
-		memcpy(&v->known[y + 1][1], own->known + y * BLOCK_EDGE, BLOCK_EDGE * sizeof(uint32_t));
+		const cells8 here = 2 * cells_load(own->near + y * BLOCK_EDGE);
+		memcpy(&v->near[y + 1][1], &here, sizeof here);
 		memcpy(&v->sign[y + 1][1], own->sign + y * BLOCK_EDGE, BLOCK_EDGE);
-		v->known[y + 1][0] = left->known[y * BLOCK_EDGE + LAST];
+		v->near[y + 1][0] = left->near[y * BLOCK_EDGE + LAST];
 		v->sign[y + 1][0] = left->sign[y * BLOCK_EDGE + LAST];
-		v->known[y + 1][BLOCK_EDGE + 1] = right->known[y * BLOCK_EDGE];
+		v->near[y + 1][BLOCK_EDGE + 1] = (uint16_t)(2 * right->near[y * BLOCK_EDGE]);
 		v->sign[y + 1][BLOCK_EDGE + 1] = right->sign[y * BLOCK_EDGE];
 	}
 	v->before2 = pool + slot[-2 * next];
@@ -147,7 +166,8 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 	v->other[0] = pool + u->other_slot[0][at];
 	v->other[1] = pool + u->other_slot[1][at];
 	v->first = pool + u->first_slot[at];
-	v->parent = pool->known;
+	v->known = own->known;
+	v->parent = pool->near;
 	v->parent_shift = band->parent_shift;
 	v->orientation = band->orientation;
 	v->band = b;
@@ -155,7 +175,7 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 		/* The parents of a block's cells lie in one block: in all of it, or in a quarter. */
 		const struct band *above = &p->bands.band[band->parent];
 		const uint32_t s = band->parent_shift, edge = s ? BLOCK_EDGE / 2 : 0;
-		v->parent = pool[u->slot[above->block_at + (by >> s) * above->block_stride + (bx >> s)]].known + (by & 1) * edge * BLOCK_EDGE + (bx & 1) * edge;
+		v->parent = pool[u->slot[above->block_at + (by >> s) * above->block_stride + (bx >> s)]].near + (by & 1) * edge * BLOCK_EDGE + (bx & 1) * edge;
 	}
 	v->level = decode ? NULL : p->levels[p->level_slot[u->field][(size_t)(u->harmonic + 2) * p->bands.blocks + at]].level;
 }
@@ -163,7 +183,7 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 static INLINE void block_scatter(const struct block_view *v, struct plane_block *own)
 {
 	for (uint32_t y = 0; y < BLOCK_EDGE; y++) {
-		memcpy(own->known + y * BLOCK_EDGE, &v->known[y + 1][1], BLOCK_EDGE * sizeof(uint32_t));
+		memcpy(own->near + y * BLOCK_EDGE, &v->near[y + 1][1], BLOCK_EDGE * sizeof(uint16_t));
 		memcpy(own->sign + y * BLOCK_EDGE, &v->sign[y + 1][1], BLOCK_EDGE);
 	}
 }
@@ -187,52 +207,51 @@ static INLINE uint32_t code_sign(const struct place *u, int decode, const struct
  * in the row itself.
  */
 struct row_view {
-	uint32_t around[BLOCK_EDGE];                   /* not yet divided by the plane's value, as the left neighbour may change */
-	uint32_t along[BLOCK_EDGE];
-	uint32_t rest[BLOCK_EDGE];                     /* 0 where along, the parent and the other fields are */
-	uint32_t beyond[BLOCK_EDGE];                   /* sizes of the parent in 4 classes and of the other fields in 8 */
-	uint32_t beside[BLOCK_EDGE], ring[BLOCK_EDGE]; /* tiers of (up, right, down) and of (before2, after2, before, after) */
+	uint16_t around[BLOCK_EDGE], along[BLOCK_EDGE];
+	uint16_t rest[BLOCK_EDGE];   /* 0 where along, the parent and the other fields are */
+	uint16_t beyond[BLOCK_EDGE]; /* of the first context of a zero bit: the parent's and the other fields' share */
+	uint16_t tiers[BLOCK_EDGE];  /* of the second: all but the left neighbour's */
 };
 
-/* size(v) / 4 and size(v) / 2, by comparisons, which vectorise */
-static INLINE uint32_t size_quarter(uint32_t v)
+/* Returns 0 when nothing around any of the row's cells, nor the cells themselves, are known to differ from 0; then *out is not set. */
+static INLINE int row_look(const struct place *u, const struct block_view *v, uint32_t y, uint32_t width, struct row_view *out)
 {
-	return (uint32_t)(v >= 4) + (uint32_t)(v >= 26) + (uint32_t)(v >= 162);
-}
+	const uint16_t *k = &v->near[y + 1][1];
+	const uint32_t at = y * BLOCK_EDGE;
+	const cells8 left = cells_load(k - 1), here = cells_load(k), right = cells_load(k + 1);
+	const cells8 up = cells_load(k - VIEW_STRIDE), down = cells_load(k + VIEW_STRIDE);
+	const cells8 corners = (cells_load(k - VIEW_STRIDE - 1) + cells_load(k - VIEW_STRIDE + 1)) +
+	                       (cells_load(k + VIEW_STRIDE - 1) + cells_load(k + VIEW_STRIDE + 1));
+	const cells8 before2 = cells_load(v->before2->near + at), before = cells_load(v->before->near + at);
+	const cells8 after = 2 * cells_load(v->after->near + at), after2 = 2 * cells_load(v->after2->near + at);
+	const cells8 others = (cells_load(v->other[0]->near + at) << (uint16_t)u->other_behind[0]) +
+	                      (cells_load(v->other[1]->near + at) << (uint16_t)u->other_behind[1]);
+	const cells8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
+	cells8 parent = cells_load(v->parent + (y >> v->parent_shift) * BLOCK_EDGE);
 
-static INLINE uint32_t size_half(uint32_t v)
-{
-	return (uint32_t)(v >= 2) + (uint32_t)(v >= 4) + (uint32_t)(v >= 11) + (uint32_t)(v >= 26) + (uint32_t)(v >= 64) + (uint32_t)(v >= 162) + (uint32_t)(v >= 407);
-}
-
-/* Returns 0 when nothing around any of the row's cells, nor the cells themselves, are known to differ from 0; then only `around` is set. */
-static INLINE uint32_t row_look(uint32_t plane, const struct block_view *v, uint32_t y, uint32_t width, struct row_view *out)
-{
-	const uint32_t *k = &v->known[y + 1][1], *up = k - VIEW_STRIDE, *down = k + VIEW_STRIDE;
-	const uint32_t *before2 = v->before2->known + y * BLOCK_EDGE, *before = v->before->known + y * BLOCK_EDGE;
-	const uint32_t *after = v->after->known + y * BLOCK_EDGE, *after2 = v->after2->known + y * BLOCK_EDGE;
-	const uint32_t *first = v->other[0]->known + y * BLOCK_EDGE, *second = v->other[1]->known + y * BLOCK_EDGE;
-	const uint32_t *above = v->parent + (y >> v->parent_shift) * BLOCK_EDGE;
-	uint32_t parent[BLOCK_EDGE], others[BLOCK_EDGE], any = 0;
-
-	for (uint32_t i = 0; i < BLOCK_EDGE; i++)
-		parent[i] = i < width ? above[i >> v->parent_shift] : 0; /* the parent's band may be wider */
-	for (int i = 0; i < BLOCK_EDGE; i++) {
-		out->around[i] = 2 * (k[i - 1] + k[i + 1] + up[i] + down[i]) + up[i - 1] + up[i + 1] + down[i - 1] + down[i + 1];
-		out->along[i] = 2 * (before2[i] + after2[i]) + before[i] + after[i];
-		others[i] = first[i] + second[i];
-		out->rest[i] = out->along[i] | others[i] | parent[i];
-		any |= k[i] | out->around[i] | out->rest[i];
-	}
-	if (!any)
+	if (v->parent_shift)
+		parent = __builtin_shufflevector(parent, parent, 0, 0, 1, 1, 2, 2, 3, 3);
+	parent &= (cells8)((signed8)lane < (int16_t)width); /* the parent's band may be wider */
+	const cells8 around = 2 * ((left + right) + (up + down)) + corners, along = 2 * (before2 + after2) + (before + after);
+	const cells8 rest = along | others | parent, any = here | around | rest;
+	uint64_t word[2];
+	memcpy(word, &any, sizeof word);
+	if (!(word[0] | word[1]))
 		return 0;
-	for (int i = 0; i < BLOCK_EDGE; i++) {
-		out->along[i] >>= plane;
-		out->beyond[i] = size_quarter(parent[i] >> plane) * (SIZES / 2) + size_half(others[i] >> plane);
-		out->beside[i] = (tier(up[i], plane) * 3 + tier(k[i + 1], plane)) * 3 + tier(down[i], plane);
-		out->ring[i] = ((tier(before2[i], plane) * 3 + tier(after2[i], plane)) * 3 + tier(before[i], plane)) * 3 + tier(after[i], plane);
-	}
-	return any;
+	const cells8 size_quarter = CELLS_FROM(parent, 4) + CELLS_FROM(parent, 26) + CELLS_FROM(parent, 162);
+	const cells8 size_half = ((CELLS_FROM(others, 2) + CELLS_FROM(others, 4)) + (CELLS_FROM(others, 11) + CELLS_FROM(others, 26))) +
+	                         ((CELLS_FROM(others, 64) + CELLS_FROM(others, 162)) + CELLS_FROM(others, 407));
+	const cells8 beyond = (size_quarter * (SIZES / 2) + size_half) * (SIZES * SIZES * 2) + (uint16_t)u->chroma;
+#define TIER(v) (CELLS_FROM(v, 1) + CELLS_FROM(v, 6))
+	const cells8 ring = ((TIER(before2) * 3 + TIER(after2)) * 3 + TIER(before)) * 3 + TIER(after);
+	const cells8 tiers = ring * 81 + ((TIER(up) * 3 + TIER(right)) * 3 + TIER(down));
+#undef TIER
+	memcpy(out->around, &around, sizeof around);
+	memcpy(out->along, &along, sizeof along);
+	memcpy(out->rest, &rest, sizeof rest);
+	memcpy(out->beyond, &beyond, sizeof beyond);
+	memcpy(out->tiers, &tiers, sizeof tiers);
+	return 1;
 }
 
 static INLINE uint32_t quiet_index(const struct place *u, uint32_t b, uint32_t fresh)
@@ -249,8 +268,10 @@ static INLINE uint32_t level_above(const struct place *u, const struct block_vie
 /* The cell's level is not 0 from this plane on. */
 static INLINE void cell_begin(const struct place *u, int decode, struct block_view *v, uint32_t y, uint32_t x)
 {
+	const uint32_t half = u->plane ? 2 : 0;
 	v->sign[y + 1][x + 1] = (uint8_t)(1 + code_sign(u, decode, v, y, x, !decode && v->level[y * BLOCK_EDGE + x] < 0));
-	v->known[y + 1][x + 1] = (4u << u->plane) | (u->plane ? 2u << u->plane : 0);
+	v->known[y * BLOCK_EDGE + x] = (4 + half) << u->plane;
+	v->near[y + 1][x + 1] = (uint16_t)(4 + half);
 }
 
 /* One level's bit of this plane; `around` as it is now. */
@@ -259,24 +280,25 @@ static INLINE void code_cell(const struct place *u, int decode, struct block_vie
 {
 	struct plane_contexts *c = u->contexts;
 	const uint32_t plane = u->plane, b = v->band, along = row->along[x];
-	uint32_t *k = &v->known[y + 1][x + 1];
+	uint16_t *near = &v->near[y + 1][x + 1];
 	const uint32_t target = decode ? 0 : level_above(u, v, y, x);
 
-	if (*k) {
-		const uint32_t value = *k >> (plane + 3), tall = value < 4 ? value : value < 8 ? 4 : 5; /* value: the planes above this one */
+	if (*near) {
+		const uint32_t half = plane ? 2 : 0, most = (uint32_t)*near >> 3, tall = most < 4 ? most : most < 8 ? 4 : 5;
 		const uint32_t bit = mixed_bit_pair(u->coder, decode, &c->mixed.refine[0][(tall * SIZES + size_of(c, along)) * 2 + u->chroma],
 		                                    &c->mixed.refine[1][(tall * BANDS_MAX + b) * SIZES + size_of(c, (around + along) >> 1)], target & 1);
-		*k = (value << 1 | bit) << (plane + 2) | (plane ? 2u << plane : 0);
+		uint32_t *known = &v->known[y * BLOCK_EDGE + x];
+		const uint32_t now = (*known >> (plane + 3) << 1 | bit) * 4 + half; /* the planes above this one, and this one's bit */
+		*known = now << plane;
+		*near = (uint16_t)(now < NEAR_MOST ? now : NEAR_MOST);
 		return;
 	}
 	uint32_t bit;
-	if (!(around | row->rest[x])) {
+	if (!(around | row->rest[x]))
 		bit = mixed_bit_alone(u->coder, decode, &c->quiet.cell[quiet_index(u, b, fresh)], target);
-	} else {
-		const uint32_t sizes = (row->beyond[x] * SIZES + size_of(c, around)) * SIZES + size_of(c, along);
-		bit = mixed_bit_pair(u->coder, decode, &c->mixed.zero[0][sizes * 2 + u->chroma],
-		                     &c->mixed.zero[1][(row->ring[x] * 3 + tier(k[-1], plane)) * 27 + row->beside[x]], target);
-	}
+	else
+		bit = mixed_bit_pair(u->coder, decode, &c->mixed.zero[0][row->beyond[x] + (size_of(c, around) * SIZES + size_of(c, along)) * 2],
+		                     &c->mixed.zero[1][row->tiers[x] + tier(near[-1]) * 27], target);
 	if (bit)
 		cell_begin(u, decode, v, y, x);
 }
@@ -305,19 +327,20 @@ static INLINE void code_row(const struct place *u, int decode, struct block_view
 	struct row_view row;
 	uint32_t start = 0, change = 0; /* twice what has been added to the left neighbour since the look */
 
-	if (!row_look(u->plane, v, y, width, &row)) {
+	if (!row_look(u, v, y, width, &row)) {
 		start = code_quiet_row(u, decode, v, y, width, fresh);
 		if (start == width)
 			return;
 		cell_begin(u, decode, v, y, start);
-		change = 2 * v->known[y + 1][1 + start++];
+		change = 2u * v->near[y + 1][1 + start++];
+		memset(&row, 0, sizeof row);
 		for (uint32_t i = 0; i < BLOCK_EDGE; i++)
-			row.beyond[i] = row.beside[i] = row.ring[i] = 0;
+			row.beyond[i] = (uint16_t)u->chroma;
 	}
 	for (uint32_t x = start; x < width; x++) {
-		const uint32_t before = v->known[y + 1][x + 1];
-		code_cell(u, decode, v, &row, y, x, (row.around[x] + change) >> u->plane, fresh);
-		change = 2 * (v->known[y + 1][x + 1] - before);
+		const uint32_t before = v->near[y + 1][x + 1];
+		code_cell(u, decode, v, &row, y, x, row.around[x] + change, fresh);
+		change = 2 * (v->near[y + 1][x + 1] - before);
 	}
 }
 
@@ -344,7 +367,7 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 		.planes = p, .contexts = p->contexts, .coder = coder, .plane = plane, .field = field, .harmonic = harmonic,
 		.chroma = field > 0, .depth = plane == 0 ? 0 : plane < 3 ? 1 : 2, .harmonic_class = harmonic_class(harmonic),
 		.blocks = p->bands.blocks, .slot = p->slot[field] + block0, .active = p->active[field] + block0,
-		.other_slot = {p->slot[field == 0] + block0, p->slot[field == 2 ? 1 : 2] + block0},
+		.other_slot = {p->slot[field == 0] + block0, p->slot[field == 2 ? 1 : 2] + block0}, .other_behind = {field == 0, field < 2},
 		.first_slot = p->slot[0] + block0, .first_active = p->active[0] + block0, .second_active = p->active[1] + block0,
 	};
 	const uint8_t *top = decode ? NULL : p->top[field] + block0;

@@ -102,14 +102,6 @@ void range_decoder_start(struct range_decoder *decoder, const uint8_t *bytes, si
 		decoder->code = decoder->code << 8 | next_byte(decoder);
 }
 
-static void decoder_refill(struct range_decoder *decoder)
-{
-	while (decoder->range < RANGE_LEAST) {
-		decoder->range <<= 8;
-		decoder->code = decoder->code << 8 | next_byte(decoder);
-	}
-}
-
 uint32_t range_decode(struct range_decoder *decoder, struct bit_model *model)
 {
 	uint32_t bound = (decoder->range >> 16) * model->probability, bit = decoder->code >= bound;
@@ -120,7 +112,7 @@ uint32_t range_decode(struct range_decoder *decoder, struct bit_model *model)
 		decoder->range = bound;
 	}
 	model_update(model, bit);
-	decoder_refill(decoder);
+	range_decoder_refill(decoder);
 	return bit;
 }
 
@@ -134,7 +126,7 @@ uint32_t range_decode_even(struct range_decoder *decoder, uint32_t count)
 		if (bit)
 			decoder->code -= decoder->range;
 		value = value << 1 | bit;
-		decoder_refill(decoder);
+		range_decoder_refill(decoder);
 	}
 	return value;
 }

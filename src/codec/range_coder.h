@@ -49,17 +49,27 @@ struct range_decoder {
 void range_decoder_start(struct range_decoder *decoder, const uint8_t *bytes, size_t count);
 uint32_t range_decode(struct range_decoder *decoder, struct bit_model *model);
 uint32_t range_decode_even(struct range_decoder *decoder, uint32_t count);
-static inline uint32_t range_decode_with(struct range_decoder *decoder, uint32_t p)
+static inline void range_decoder_refill(struct range_decoder *decoder)
 {
-	uint32_t bound = (decoder->range >> 16) * p, bit = decoder->code >= bound;
-	decoder->code -= bit ? bound : 0;
-	decoder->range = bit ? decoder->range - bound : bound;
 	while (decoder->range < 1u << 24) {
 		decoder->range <<= 8;
 		decoder->code = decoder->code << 8 | (decoder->at < decoder->count ? decoder->bytes[decoder->at] : 0);
 		decoder->at++;
 	}
-	return bit;
+}
+/* Two ways that do not meet: whatever follows from the bit follows without asking for it again. */
+static inline uint32_t range_decode_with(struct range_decoder *decoder, uint32_t p)
+{
+	const uint32_t bound = (decoder->range >> 16) * p;
+	if (decoder->code >= bound) {
+		decoder->code -= bound;
+		decoder->range -= bound;
+		range_decoder_refill(decoder);
+		return 1;
+	}
+	decoder->range = bound;
+	range_decoder_refill(decoder);
+	return 0;
 }
 /* True when exactly the bytes given were used: what an intact stream shows behind its last bit. */
 static inline int range_decoder_ended(const struct range_decoder *decoder)
