@@ -89,7 +89,7 @@ static void levels_come_back_from_any_prefix_of_units(void **unused)
 			planes_start(out, in->planes);
 			range_decoder_start(&coder.decoder, bytes.bytes, bytes.count);
 			for (uint32_t u = 0; u < end; u++)
-				planes_decode_unit(out, &coder, u);
+				assert_int_equal(planes_decode_unit(out, &coder, u, NULL), BP_OK);
 			assert_true(range_decoder_ended(&coder.decoder));
 			assert_int_equal(planes_collect(out, end, &levels, &count, NULL), BP_OK);
 			for (uint32_t i = 0; i < count; i++) {
@@ -183,7 +183,7 @@ static void arbitrary_bytes_decode_to_something_legal(void **unused)
 		planes_start(planes, DEFAULT_PLANES_MAX);
 		range_decoder_start(&coder.decoder, bytes, sizeof bytes);
 		for (uint32_t u = 0; u < planes_units(planes); u++)
-			planes_decode_unit(planes, &coder, u);
+			assert_int_equal(planes_decode_unit(planes, &coder, u, NULL), BP_OK);
 		assert_int_equal(planes_collect(planes, planes_units(planes), &levels, &count, NULL), BP_OK);
 		for (uint32_t i = 0; i < count; i++)
 			assert_true(levels[i].level != 0 && abs(levels[i].level) < 1 << DEFAULT_PLANES_MAX && levels[i].at < 3 * lattice_cells(d));

@@ -64,14 +64,15 @@ void planes_quantise(struct planes *p, float *const coefficient[3], float step, 
 }
 
 /* Counts the levels of one band of one harmonic and stores the first `room` of them. */
-static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t harmonic, uint32_t lowest, const struct band *band,
+static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t harmonic, uint32_t lowest, uint32_t b,
                              struct default_level *out, uint32_t room)
 {
+	const struct band *band = &p->bands.band[b];
 	const uint32_t *slot = p->slot[field] + (size_t)(harmonic + 2) * p->bands.blocks + band->block_at;
 	const size_t field0 = field * lattice_cells(p->dims) + spectrum_lane(p->dims.phi_d, harmonic);
 	uint32_t n = 0;
 
-	if (!p->active[field][(size_t)(harmonic + 2) * p->bands.blocks + band->block_at - band->block_stride - 1])
+	if (!(p->bands_active[field][harmonic + 2] >> b & 1))
 		return 0;
 	for (uint32_t by = 0; by < band->block_rows; by++)
 		for (uint32_t bx = 0; bx < band->block_columns; bx++) {
@@ -113,7 +114,7 @@ bp_status planes_collect(const struct planes *p, uint32_t end, struct default_le
 				levels = larger;
 			}
 			for (uint32_t b = 0; b < p->bands.count; b++)
-				n += band_collect(p, f, m, lowest, &p->bands.band[b], levels + n, room - n);
+				n += band_collect(p, f, m, lowest, b, levels + n, room - n);
 		}
 	*out = levels;
 	*count = n;

@@ -40,9 +40,10 @@ struct planes {
 	uint32_t planes;
 	/* Per field, [harmonic][block], with two harmonics of zeros before and behind. */
 	uint32_t *slot[3];   /* the block's place in the pool; 0, a block of zeros, where all its levels are 0 so far */
-	uint8_t *active[3];  /* 1 where there is a slot; one block of padding is the band's own flag */
+	uint8_t *active[3];  /* 1 where there is a slot */
+	uint32_t *bands_active[3]; /* [harmonic]: bit b is 1 where band b holds a block that is active */
 	struct plane_block *pool;
-	uint32_t pool_count;
+	uint32_t pool_count, pool_room;
 	/* Encoder only: the levels, in a pool of their own, and, per block, the planes that its largest one needs. */
 	uint32_t *level_slot[3];
 	uint8_t *top[3];
@@ -77,7 +78,11 @@ static inline uint32_t planes_unit_plane(const struct planes *planes, uint32_t u
 	return planes->planes - 1 - unit / (3 * planes->dims.phi_d);
 }
 void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
-void planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit);
+/* BP_ERROR_MEMORY where the pool cannot grow; nothing was decoded then. */
+bp_status planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit, bp_error *error);
+
+/* Decoder: the pool has room for all blocks that one more unit may take. */
+bp_status planes_pool_grow(struct planes *planes, bp_error *error);
 
 /* The levels as units 0..end-1 tell them: malloc'ed, ordered by field, harmonic, band, block and place. */
 bp_status planes_collect(const struct planes *planes, uint32_t end, struct default_level **out, uint32_t *count, bp_error *error);

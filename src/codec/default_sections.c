@@ -154,8 +154,11 @@ static bp_status planes_read(const struct section_bytes *section, struct planes 
 	if (*end < from || *end > units)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "planes end at unit %u, not from %u to %u", *end, from, units);
 	range_decoder_start(&coder.decoder, section->bytes + 4, section->entry->bytes - 4);
-	for (uint32_t unit = from; unit < *end && coder.decoder.at <= coder.decoder.count; unit++)
-		planes_decode_unit(planes, &coder, unit);
+	for (uint32_t unit = from; unit < *end && coder.decoder.at <= coder.decoder.count; unit++) {
+		const bp_status status = planes_decode_unit(planes, &coder, unit, error);
+		if (status)
+			return status;
+	}
 	if (!range_decoder_ended(&coder.decoder))
 		return error_set(error, BP_ERROR_CORRUPT, section->entry->bytes, "planes do not end where their section does");
 	return BP_OK;

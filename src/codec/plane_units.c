@@ -56,6 +56,8 @@ struct place {
 	uint32_t other_behind[2];      /* 1 where that field's plane is still to be coded, else 0 */
 	const uint32_t *first_slot;
 	const uint8_t *first_active, *second_active; /* of fields 0 and 1, for fields after them */
+	uint32_t *bands;                             /* bands_active of this field and harmonic, and those of the two fields likewise */
+	uint32_t first_bands, second_bands;
 };
 
 /*
@@ -74,60 +76,52 @@ struct block_view {
 	uint32_t parent_shift, orientation, band;
 };
 
-static INLINE uint32_t other_active(const struct place *u, size_t at)
-{
-	return (u->field > 0 ? u->first_active[at] : 0u) + (u->field > 1 ? u->second_active[at] : 0u);
-}
-
-static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_t b, size_t at, uint32_t bit)
+static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_t b, uint32_t bit)
 {
 	struct plane_contexts *c = u->contexts;
-	const struct band *band = &u->planes->bands.band[b];
-	const uint8_t *flag = u->active + at;
-	const size_t next = u->blocks;
-	const uint32_t near = (uint32_t)flag[-(ptrdiff_t)next] + flag[next];
-	const uint32_t alike = (uint32_t)flag[-2 * (ptrdiff_t)next] + flag[2 * next];
-	const uint32_t others = other_active(u, at);
-	uint32_t parent = 1;
+	const uint32_t *bands = u->bands;
+	const int32_t above = u->planes->bands.band[b].parent;
+	const uint32_t parent = above < 0 ? 0 : bands[0] >> above & 1;
 
-	if (band->parent >= 0) {
-		const struct band *above = &u->planes->bands.band[band->parent];
-		parent = u->active[above->block_at - above->block_stride - 1];
-	}
-	if (!(near | alike | others) && (!parent || band->parent < 0))
+	if (!(((bands[-2] | bands[-1] | bands[1] | bands[2] | u->first_bands | u->second_bands) >> b & 1) | parent))
 		return mixed_bit_alone(u->coder, decode, &c->quiet.band[u->harmonic_class * 2 + u->chroma], bit);
-	return mixed_bit_pair(u->coder, decode, &c->mixed.band[0][(((near * 3 + alike) * 2 + parent) * 3 + others) * 2 + u->chroma],
+	const uint32_t near = (bands[-1] >> b & 1) + (bands[1] >> b & 1), alike = (bands[-2] >> b & 1) + (bands[2] >> b & 1);
+	const uint32_t others = (u->first_bands >> b & 1) + (u->second_bands >> b & 1);
+	return mixed_bit_pair(u->coder, decode, &c->mixed.band[0][(((near * 3 + alike) * 2 + (parent | (above < 0))) * 3 + others) * 2 + u->chroma],
 	                      &c->mixed.band[1][(near + alike) * BANDS_MAX + b], bit);
 }
 
-static INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32_t b, uint32_t y, uint32_t x, size_t at, uint32_t bit)
+/* `above`: the active blocks of the row of parents; NULL in band 0. */
+static INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32_t b, uint32_t x, size_t at, const uint8_t *above, uint32_t bit)
 {
 	struct plane_contexts *c = u->contexts;
 	const struct band *band = &u->planes->bands.band[b];
 	const uint8_t *flag = u->active + at;
-	const size_t next = u->blocks;
-	/* The padding holds the band's own flag in one corner, so the border is tested after all. */
-	const uint32_t left = x ? flag[-1] : 0, up = y ? flag[-(ptrdiff_t)band->block_stride] : 0;
-	const uint32_t right = x + 1 < band->block_columns ? flag[1] : 0, down = y + 1 < band->block_rows ? flag[band->block_stride] : 0;
-	const uint32_t beside = left + up + right + down;
-	const uint32_t corners = (x && y ? flag[-(ptrdiff_t)band->block_stride - 1] : 0u) +
-	                         (y && x + 1 < band->block_columns ? flag[-(ptrdiff_t)band->block_stride + 1] : 0u);
-	const uint32_t near = (uint32_t)flag[-(ptrdiff_t)next] + flag[next];
-	const uint32_t alike = (uint32_t)flag[-2 * (ptrdiff_t)next] + flag[2 * next];
-	const uint32_t others = other_active(u, at);
+	const ptrdiff_t row = band->block_stride, next = (ptrdiff_t)u->blocks;
+	const uint32_t beside = ((uint32_t)flag[-1] + flag[1]) + ((uint32_t)flag[-row] + flag[row]);
+	const uint32_t corners = (uint32_t)flag[-row - 1] + flag[-row + 1];
+	const uint32_t near = (uint32_t)flag[-next] + flag[next], alike = (uint32_t)flag[-2 * next] + flag[2 * next];
+	const uint32_t others = (u->field > 0 ? u->first_active[at] : 0u) + (u->field > 1 ? u->second_active[at] : 0u);
 	uint32_t parent = 0;
 
-	if (band->parent >= 0) {
-		const struct band *above = &u->planes->bands.band[band->parent];
-		uint32_t py = y >> band->parent_shift, px = x >> band->parent_shift;
-		py = py < above->block_rows ? py : above->block_rows - 1;
-		px = px < above->block_columns ? px : above->block_columns - 1;
-		parent = u->active[above->block_at + py * above->block_stride + px];
+	if (above) {
+		const uint32_t px = x >> band->parent_shift, last = u->planes->bands.band[band->parent].block_columns - 1;
+		parent = above[px < last ? px : last];
 	}
 	if (!(beside | corners | near | alike | others | parent))
 		return mixed_bit_alone(u->coder, decode, &c->quiet.block[(u->harmonic_class * BANDS_MAX + b) * 2 + u->chroma], bit);
 	return mixed_bit_pair(u->coder, decode, &c->mixed.block[0][(((beside * 3 + corners) * 3 + alike) * 3 + near) * 2 + parent],
 	                      &c->mixed.block[1][(((b * 3 + alike) * 3 + near) * 3 + others) * 2 + u->chroma], bit);
+}
+
+/* The active blocks among the parents of a band's row y of blocks. */
+static INLINE const uint8_t *parents_active(const struct place *u, const struct band *band, uint32_t y)
+{
+	if (band->parent < 0)
+		return NULL;
+	const struct band *above = &u->planes->bands.band[band->parent];
+	const uint32_t py = y >> band->parent_shift, last = above->block_rows - 1;
+	return u->active + above->block_at + (size_t)(py < last ? py : last) * above->block_stride;
 }
 
 static INLINE void block_gather(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at, struct block_view *v)
@@ -369,23 +363,26 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 		.blocks = p->bands.blocks, .slot = p->slot[field] + block0, .active = p->active[field] + block0,
 		.other_slot = {p->slot[field == 0] + block0, p->slot[field == 2 ? 1 : 2] + block0}, .other_behind = {field == 0, field < 2},
 		.first_slot = p->slot[0] + block0, .first_active = p->active[0] + block0, .second_active = p->active[1] + block0,
+		.bands = p->bands_active[field] + harmonic + 2, .first_bands = field > 0 ? p->bands_active[0][harmonic + 2] : 0,
+		.second_bands = field > 1 ? p->bands_active[1][harmonic + 2] : 0,
 	};
 	const uint8_t *top = decode ? NULL : p->top[field] + block0;
 
 	for (uint32_t b = 0; b < p->bands.count; b++) {
 		const struct band *band = &p->bands.band[b];
-		const size_t own = band->block_at - band->block_stride - 1; /* the band's flag */
-		if (!u.active[own]) {
-			if (!code_band_flag(&u, decode, b, own, !decode && top[own] > plane))
+		if (!(*u.bands >> b & 1)) {
+			if (!code_band_flag(&u, decode, b, !decode && top[band->block_at - band->block_stride - 1] > plane))
 				continue;
-			u.active[own] = 1;
+			*u.bands |= 1u << b;
 		}
-		for (uint32_t by = 0; by < band->block_rows; by++)
+		for (uint32_t by = 0; by < band->block_rows; by++) {
+			const uint8_t *above = parents_active(&u, band, by);
+			const size_t row = band->block_at + (size_t)by * band->block_stride;
 			for (uint32_t bx = 0; bx < band->block_columns; bx++) {
-				const size_t at = band->block_at + (size_t)by * band->block_stride + bx;
+				const size_t at = row + bx;
 				const uint32_t fresh = !u.active[at];
 				if (fresh) {
-					if (!code_block_flag(&u, decode, b, by, bx, at, !decode && top[at] > plane))
+					if (!code_block_flag(&u, decode, b, bx, at, above, !decode && top[at] > plane))
 						continue;
 					u.active[at] = 1;
 					u.slot[at] = p->pool_count++;
@@ -393,6 +390,7 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 				}
 				code_block(&u, decode, b, by, bx, at, fresh);
 			}
+		}
 	}
 }
 
@@ -401,10 +399,14 @@ void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32
 	unit_code(planes, coder, unit, 0);
 }
 
-void planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit)
+bp_status planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit, bp_error *error)
 {
+	const bp_status status = planes_pool_grow(planes, error);
+	if (status)
+		return status;
 	/* A copy that nothing else points to can stay in registers. */
 	struct mixed_coder own = *coder;
 	unit_code(planes, &own, unit, 1);
 	*coder = own;
+	return BP_OK;
 }
