@@ -216,7 +216,7 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	t->row = 2 * blocks * t->block_bytes;
 	t->slice = t->row * ((e->dims.theta_d + 1) / 2);
 	const size_t cells_bytes = ((size_t)e->dims.theta_h * t->slice + TABLE_SLACK_BYTES + 7) & ~(size_t)7;
-	t->store_bytes = cells_bytes + period * sizeof *t->place;
+	t->store_bytes = cells_bytes + period * sizeof *t->place + e->dims.theta_d * sizeof *t->rows;
 
 	const uint32_t padded = blocks * t->width + 1, kept = 3 * blocks;
 	const float factor = table_factor(largest);
@@ -247,6 +247,12 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 			.place = (float)(int32_t)(in - later * t->half) * t->half_reciprocal,
 		};
 	}
+	t->rows = (struct compact_rows *)(void *)(t->place + period);
+	for (uint32_t j = 0; j < e->dims.theta_d; j++)
+		t->rows[j] = (struct compact_rows){
+			.offset = t->row * (j / 2) + j % 2 * t->block_bytes,
+			.step = j % 2 ? t->row - t->block_bytes : t->block_bytes,
+		};
 	for (size_t r = 0; r < rows; r++) {
 		uint8_t *block = row_at(t, r / e->dims.theta_d, r % e->dims.theta_d);
 		row_prepare(e, r, factor, padded, t->channels, &row);

@@ -1,36 +1,41 @@
 /* compact.inc.h: evaluation in the compact form (compact.h). Included after expanded.inc.h, once plain and once for AVX2. */
 #include "compact.h"
 
-/* The cell's look-up, from what is known of its phi_d. */
-static inline struct lookup KERNEL(compact_lookup)(const struct table *t, const struct cell *cell, uint32_t block, uint32_t residual,
-                                                   uint32_t share, float place)
+/*
+ * What a single look-up reads: the blocks of four rows (theta_h, theta_d), (., +1), (+1, .), (+1, +1), bytes within them, and
+ * (h, ...) and (meaningless, d, p, place): fractions, and the place between the two share codes.
+ */
+struct compact_view {
+	const uint8_t *a, *b, *c, *d;
+	uint32_t residual, share;
+	f32x4 h, at;
+};
+
+static inline struct compact_view KERNEL(compact_look)(const struct table *t, const struct cell_x4 *cell)
 {
-	uint32_t odd = cell->j & 1;
-	return (struct lookup){
-		.offset = t->slice * cell->i + t->row * (cell->j >> 1) + block + odd * t->block_bytes,
-		.step_d = odd ? t->row - t->block_bytes : t->block_bytes,
-		.residual = residual,
-		.share = share,
-		.h = cell->h,
-		.d = cell->d,
-		.p = cell->p,
-		.place = place + cell->p * t->half_reciprocal,
-	};
+	const struct compact_place *place = &t->place[cell->k];
+	const struct compact_rows *rows = &t->rows[cell->j];
+	const uint8_t *const first = t->store + rows->offset + place->block, *const a = first + (size_t)t->slice * cell->i, *const c = a + t->slice;
+	f32x4 at = cell->beyond;
+	at[3] = place->place + cell->beyond[2] * t->half_reciprocal;
+	return (struct compact_view){a, a + rows->step, c, c + rows->step, place->residual, place->share, cell->h, at};
 }
 
-static inline struct lookup KERNEL(compact_find)(const struct table *t, struct cell cell)
-{
-	const struct compact_place *at = &t->place[cell.k];
-	return KERNEL(compact_lookup)(t, &cell, at->block, at->residual, at->share, at->place);
-}
-
-/* The same without looking it up: for a loop that vectorises. */
+/* One of many, without looking anything up: for a loop that vectorises. */
 static inline struct lookup KERNEL(compact_find_many)(const struct table *t, struct cell cell)
 {
 	/* k < 1024, so the product with the reciprocal, rounded up, truncates to the exact quotient */
-	uint32_t block = cell.k * t->width_reciprocal >> 16, in = cell.k - block * t->width, later = in >= t->half;
-	return KERNEL(compact_lookup)(t, &cell, 2 * block * t->block_bytes, COMPACT_RESIDUALS + in, COMPACT_SHARES + 3 * later,
-	                              (float)(int32_t)(in - later * t->half) * t->half_reciprocal);
+	uint32_t block = cell.k * t->width_reciprocal >> 16, in = cell.k - block * t->width, later = in >= t->half, odd = cell.j & 1;
+	return (struct lookup){
+		.offset = t->slice * cell.i + t->row * (cell.j >> 1) + (2 * block + odd) * t->block_bytes,
+		.step_d = odd ? t->row - t->block_bytes : t->block_bytes,
+		.residual = COMPACT_RESIDUALS + in,
+		.share = COMPACT_SHARES + 3 * later,
+		.h = cell.h,
+		.d = cell.d,
+		.p = cell.p,
+		.place = (float)(int32_t)(in - later * t->half) * t->half_reciprocal + cell.p * t->half_reciprocal,
+	};
 }
 
 static inline uint64_t KERNEL(load64)(const uint8_t *at)
@@ -55,53 +60,52 @@ static inline uint32_t KERNEL(load16)(const uint8_t *at)
 }
 
 /*
- * Lanes of eight hold two values of each of the four rows (theta_h, theta_d), (., +1), (+1, .), (+1, +1): those at two cells along
- * phi_d, or two codes. The first byte of two is the low one: this form is made and read on little-endian machines only.
+ * Lanes of eight hold two values of each of the four rows: those at two cells along phi_d, or two codes. The first byte of two is the low
+ * one: this form is made and read on little-endian machines only.
  */
-static inline void KERNEL(compact_residuals)(const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d, uint32_t at,
-                                             f32x8 *out)
+static inline void KERNEL(compact_residuals)(const struct compact_view *v, f32x8 *out)
 {
+	const uint32_t at = v->residual;
 #ifdef __AVX2__
-	__m128i near = _mm_cvtsi32_si128((int)KERNEL(load32)(a + at)), far = _mm_cvtsi32_si128((int)KERNEL(load32)(c + at));
-	near = _mm_insert_epi16(near, (int)KERNEL(load16)(b + at), 1);
-	far = _mm_insert_epi16(far, (int)KERNEL(load16)(d + at), 1);
+	__m128i near = _mm_cvtsi32_si128((int)KERNEL(load32)(v->a + at)), far = _mm_cvtsi32_si128((int)KERNEL(load32)(v->c + at));
+	near = _mm_insert_epi16(near, (int)KERNEL(load16)(v->b + at), 1);
+	far = _mm_insert_epi16(far, (int)KERNEL(load16)(v->d + at), 1);
 	*out = (f32x8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_unpacklo_epi32(near, far)));
 #else
-	const u32x4 pairs = {KERNEL(load16)(a + at), KERNEL(load16)(b + at), KERNEL(load16)(c + at),
-	                     KERNEL(load16)(d + at)};
+	const u32x4 pairs = {KERNEL(load16)(v->a + at), KERNEL(load16)(v->b + at), KERNEL(load16)(v->c + at), KERNEL(load16)(v->d + at)};
 	const f32x4 here = __builtin_convertvector((i32x4)(pairs & 0xff), f32x4), next = __builtin_convertvector((i32x4)(pairs >> 8), f32x4);
 	*out = __builtin_shufflevector(here, next, 0, 4, 1, 5, 2, 6, 3, 7);
 #endif
 }
 
-/* The 24 bits of the code at `at`, and of the one after it. Eight bytes are read, from two before: they end within the block. */
-static inline void KERNEL(compact_codes)(const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d, uint32_t at, i32x8 *out)
+/* The two codes of R and of B at the share's place. Eight bytes are read, from two before: they end within the block. */
+static inline void KERNEL(compact_codes)(const struct compact_view *v, f32x8 *red, f32x8 *blue)
 {
-	const uint64_t i = KERNEL(load64)(a + at - 2), j = KERNEL(load64)(b + at - 2);
-	const uint64_t k = KERNEL(load64)(c + at - 2), l = KERNEL(load64)(d + at - 2);
+	const uint32_t at = v->share - 2;
+	const uint64_t i = KERNEL(load64)(v->a + at), j = KERNEL(load64)(v->b + at), k = KERNEL(load64)(v->c + at), l = KERNEL(load64)(v->d + at);
 #ifdef __AVX2__
-	const __m256i spread = _mm256_setr_epi8(2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15, -1, /* in each half */
-	                                        2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15, -1);
+	const __m256i spread = _mm256_setr_epi8(-1, 2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15, /* in each half */
+	                                        -1, 2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15);
 	const __m128i near = _mm_set_epi64x((int64_t)j, (int64_t)i), far = _mm_set_epi64x((int64_t)l, (int64_t)k);
-	*out = (i32x8)_mm256_shuffle_epi8(_mm256_set_m128i(far, near), spread);
+	const __m256i both = _mm256_shuffle_epi8(_mm256_set_m128i(far, near), spread);
+	*red = (f32x8)_mm256_cvtepi32_ps(_mm256_srli_epi32(_mm256_slli_epi32(both, 12), 20));
+	*blue = (f32x8)_mm256_cvtepi32_ps(_mm256_srli_epi32(both, 20));
 #else
-	*out = (i32x8){(int32_t)(i >> 16 & 0xffffff), (int32_t)(i >> 40), (int32_t)(j >> 16 & 0xffffff), (int32_t)(j >> 40),
-	               (int32_t)(k >> 16 & 0xffffff), (int32_t)(k >> 40), (int32_t)(l >> 16 & 0xffffff), (int32_t)(l >> 40)};
+	const i32x8 both = {(int32_t)(i >> 16 & 0xffffff), (int32_t)(i >> 40), (int32_t)(j >> 16 & 0xffffff), (int32_t)(j >> 40),
+	                    (int32_t)(k >> 16 & 0xffffff), (int32_t)(k >> 40), (int32_t)(l >> 16 & 0xffffff), (int32_t)(l >> 40)};
+	*red = __builtin_convertvector(both & 4095, f32x8);
+	*blue = __builtin_convertvector(both >> 12, f32x8);
 #endif
 }
 
 /* The 16-bit floats at the starts of the blocks, and those after them. */
-static inline void KERNEL(compact_heads)(const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d, f32x8 *base, f32x8 *step)
+static inline void KERNEL(compact_heads)(const struct compact_view *v, f32x8 *base, f32x8 *step)
 {
-	const u32x4 head = {KERNEL(load32)(a), KERNEL(load32)(b), KERNEL(load32)(c), KERNEL(load32)(d)};
+	const u32x4 head = {KERNEL(load32)(v->a), KERNEL(load32)(v->b), KERNEL(load32)(v->c), KERNEL(load32)(v->d)};
 #ifdef __AVX2__
-	const __m256i both = _mm256_broadcastsi128_si256((__m128i)head);
-	const __m256i low = _mm256_setr_epi8(-1, -1, 0, 1, -1, -1, 0, 1, -1, -1, 4, 5, -1, -1, 4, 5, /* rows 0, 1 in the first half */
-	                                     -1, -1, 8, 9, -1, -1, 8, 9, -1, -1, 12, 13, -1, -1, 12, 13);
-	const __m256i high = _mm256_setr_epi8(-1, -1, 2, 3, -1, -1, 2, 3, -1, -1, 6, 7, -1, -1, 6, 7,
-	                                      -1, -1, 10, 11, -1, -1, 10, 11, -1, -1, 14, 15, -1, -1, 14, 15);
-	*base = (f32x8)_mm256_srli_epi32(_mm256_shuffle_epi8(both, low), 16 - COMPACT_HEAD_SHIFT);
-	*step = (f32x8)_mm256_srli_epi32(_mm256_shuffle_epi8(both, high), 16 - COMPACT_HEAD_SHIFT);
+	const __m256 both = (__m256)_mm256_slli_epi32(_mm256_cvtepu16_epi32((__m128i)head), COMPACT_HEAD_SHIFT);
+	*base = (f32x8)_mm256_moveldup_ps(both);
+	*step = (f32x8)_mm256_movehdup_ps(both);
 #else
 	const f32x4 low = (f32x4)((head & 0xffff) << COMPACT_HEAD_SHIFT), high = (f32x4)(head >> 16 << COMPACT_HEAD_SHIFT);
 	*base = __builtin_shufflevector(low, low, 0, 0, 1, 1, 2, 2, 3, 3);
@@ -109,37 +113,51 @@ static inline void KERNEL(compact_heads)(const uint8_t *a, const uint8_t *b, con
 #endif
 }
 
-/* The mean of the channels times its weight. */
-static inline void KERNEL(compact_mean)(const struct lookup *l, const uint8_t *a, const uint8_t *b, const uint8_t *c, const uint8_t *d,
-                                        f32x8 *out)
+static inline void KERNEL(join)(f32x4 low, f32x4 high, f32x8 *out)
 {
-	const float h1 = l->h, h0 = 1 - h1, d1 = l->d, d0 = 1 - d1, p1 = l->p, p0 = 1 - p1;
-	const f32x4 weight = (f32x4){d0, d0, d1, d1} * (f32x4){p0, p1, p0, p1}, near = weight * h0, far = weight * h1;
-	f32x8 residual, base, step;
-	KERNEL(compact_residuals)(a, b, c, d, l->residual, &residual);
-	KERNEL(compact_heads)(a, b, c, d, &base, &step);
-	f32x8 root = base + step * residual;
-	root *= root;
-	*out = root * root * __builtin_shufflevector(near, far, 0, 1, 2, 3, 4, 5, 6, 7);
+#ifdef __AVX2__ /* one instruction, of which gcc 12 makes three */
+	*out = (f32x8)_mm256_set_m128((__m128)high, (__m128)low);
+#else
+	*out = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
 }
 
+/* The sum of the rows of theta_h and those of the next. */
 static inline f32x4 KERNEL(halves)(const f32x8 *v)
 {
+#ifdef __AVX2__
+	return (f32x4)_mm256_castps256_ps128((__m256)*v) + (f32x4)_mm256_extractf128_ps((__m256)*v, 1);
+#else
 	return __builtin_shufflevector(*v, *v, 0, 1, 2, 3) + __builtin_shufflevector(*v, *v, 4, 5, 6, 7);
+#endif
 }
 
-static inline void KERNEL(compact_rgb)(const struct table *t, const struct lookup *l, float rgb[3])
+/* The mean of the channels times its weight; and (1 - p, p, 1 - place, place). */
+static inline f32x4 KERNEL(compact_mean)(const struct compact_view *v, f32x8 *out)
 {
-	const uint8_t *const a = t->store + l->offset, *const b = a + l->step_d, *const c = a + t->slice, *const d = c + l->step_d;
-	const float place = l->place, rest = 1 - place;
-	f32x8 mean;
-	i32x8 codes;
-	KERNEL(compact_mean)(l, a, b, c, d, &mean);
-	KERNEL(compact_codes)(a, b, c, d, l->share, &codes);
+	const f32x4 one = {1, 1, 1, 1}, to = v->at, from = one - to, h = __builtin_shufflevector(v->h, v->h, 0, 0, 0, 0);
+	const f32x4 along = __builtin_shufflevector(from, to, 2, 6, 3, 7), across = __builtin_shufflevector(from, to, 1, 1, 5, 5);
+	const f32x4 weight = across * __builtin_shufflevector(along, along, 0, 1, 0, 1);
+	f32x8 residual, base, step, both;
+	KERNEL(join)(weight * (one - h), weight * h, &both);
+	KERNEL(compact_residuals)(v, &residual);
+	KERNEL(compact_heads)(v, &base, &step);
+	f32x8 root = base + step * residual;
+	root *= root;
+	*out = root * root * both;
+	return along;
+}
+
+static inline void KERNEL(compact_rgb)(const struct table *t, const struct compact_view *v, float rgb[3])
+{
+	f32x8 mean, place, red, blue;
+	const f32x4 along = KERNEL(compact_mean)(v, &mean), ends = __builtin_shufflevector(along, along, 2, 3, 2, 3);
+	KERNEL(join)(ends, ends, &place);
+	KERNEL(compact_codes)(v, &red, &blue);
 	/* the shares of the four rows are taken at phi_d itself: within a cell their change is far below that of the mean */
-	const f32x8 weight = (mean + __builtin_shufflevector(mean, mean, 1, 0, 3, 2, 5, 4, 7, 6)) *
-	                     (f32x8){rest, place, rest, place, rest, place, rest, place};
-	const f32x8 red = __builtin_convertvector(codes & 4095, f32x8) * weight, blue = __builtin_convertvector(codes >> 12, f32x8) * weight;
+	const f32x8 weight = (mean + __builtin_shufflevector(mean, mean, 1, 0, 3, 2, 5, 4, 7, 6)) * place;
+	red *= weight;
+	blue *= weight;
 	const f32x4 r = KERNEL(halves)(&red), g = KERNEL(halves)(&mean), u = KERNEL(halves)(&blue);
 	const f32x4 pair = __builtin_shufflevector(r, u, 0, 4, 1, 5) + __builtin_shufflevector(r, u, 2, 6, 3, 7);
 	const f32x4 codes_sum = pair + __builtin_shufflevector(pair, pair, 2, 3, 2, 3);
@@ -153,13 +171,31 @@ static inline void KERNEL(compact_rgb)(const struct table *t, const struct looku
 	rgb[2] = out[2];
 }
 
-static inline void KERNEL(compact_mono)(const struct table *t, const struct lookup *l, float rgb[3])
+static inline void KERNEL(compact_mono)(const struct table *t, const struct compact_view *v, float rgb[3])
 {
-	const uint8_t *const a = t->store + l->offset, *const c = a + t->slice;
 	f32x8 mean;
-	KERNEL(compact_mean)(l, a, a + l->step_d, c, c + l->step_d, &mean);
+	(void)KERNEL(compact_mean)(v, &mean);
 	const f32x4 m = KERNEL(halves)(&mean);
 	rgb[0] = rgb[1] = rgb[2] = ((m[0] + m[2]) + (m[1] + m[3])) * t->unit;
+}
+
+static inline void KERNEL(compact_rgb_one)(const struct table *t, const struct cell_x4 *cell, float rgb[3])
+{
+	const struct compact_view v = KERNEL(compact_look)(t, cell);
+	KERNEL(compact_rgb)(t, &v, rgb);
+}
+
+static inline void KERNEL(compact_mono_one)(const struct table *t, const struct cell_x4 *cell, float rgb[3])
+{
+	const struct compact_view v = KERNEL(compact_look)(t, cell);
+	KERNEL(compact_mono)(t, &v, rgb);
+}
+
+static inline void KERNEL(compact_mono_of_many)(const struct table *t, const struct lookup *l, float rgb[3])
+{
+	const uint8_t *const a = t->store + l->offset, *const c = a + t->slice;
+	const struct compact_view v = {a, a + l->step_d, c, c + l->step_d, l->residual, 0, {l->h, 0, 0, 0}, {0, l->d, l->p, 0}};
+	KERNEL(compact_mono)(t, &v, rgb);
 }
 
 /* What many look-ups read, by row (as the lanes above): scattered bytes first, then loops that vectorise. */
@@ -238,9 +274,9 @@ static inline void KERNEL(compact_rgb_values)(const struct table *t, const struc
 	}
 }
 
-TABLE_VALUES(compact_mono_values, KERNEL(compact_mono), 1, 1)
-TABLE_FORMS(compact_rgb, KERNEL(compact_find), KERNEL(compact_find_many), KERNEL(compact_rgb), KERNEL(compact_rgb_values), 1, 1)
-TABLE_FORMS(compact_mono, KERNEL(compact_find), KERNEL(compact_find_many), KERNEL(compact_mono), KERNEL(compact_mono_values), 1, 1)
+TABLE_VALUES(compact_mono_values, KERNEL(compact_mono_of_many), 1, 1)
+TABLE_FORMS(compact_rgb, KERNEL(cell_h_last), KERNEL(compact_rgb_one), KERNEL(compact_find_many), KERNEL(compact_rgb_values), 1, 1)
+TABLE_FORMS(compact_mono, KERNEL(cell_h_last), KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_values), 1, 1)
 
 const struct table_kernels KERNEL(table_compact)[2] = {
 	{KERNEL(compact_mono_evaluate), KERNEL(compact_mono_nearest), KERNEL(compact_mono_batch)},

@@ -82,6 +82,18 @@ static inline f32x4 sqrt_x4(f32x4 a) { return (f32x4){sqrtf(a[0]), sqrtf(a[1]), 
 #endif
 static inline f32x4 abs_x4(f32x4 a) { return (f32x4)((i32x4)a & 0x7fffffff); }
 
+/* (x, y, z, 0) */
+static inline f32x4 load_xyz(const float w[3])
+{
+#ifdef __SSE2__ /* two loads, of which gcc 12 makes five instructions */
+	f32x4 v = (f32x4)_mm_loadl_epi64((const __m128i *)(const void *)w);
+	v[2] = w[2];
+	return v;
+#else
+	return (f32x4){w[0], w[1], w[2], 0};
+#endif
+}
+
 /* Whether a comparison holds in all lanes. */
 #ifdef __SSE2__
 static inline bool all_x4(i32x4 mask) { return _mm_movemask_ps((__m128)mask) == 15; }
@@ -151,11 +163,14 @@ static inline struct lattice_point direction_point(const struct direction_argume
 /* One pair of directions. Returns false, and leaves *out unset, where direction_usable says so. */
 bool direction_to_lattice(struct lattice_dims dims, const float wi[3], const float wo[3], struct lattice_point *out);
 
-/* The same inline, as a vector (h, d, p, 0): for the kernels. Few operations, because a single look-up waits for all of them. */
-static inline bool direction_locate(f32x4 scale, const float wi[3], const float wo[3], f32x4 *out)
+/*
+ * The same inline, as vectors of which *squared begins with h^2, and *out is (meaningless, d, p, 0): for the kernels. Few operations,
+ * because a single look-up waits for all of them; and what does not need h need not wait for its root.
+ */
+static inline bool direction_locate_squared(f32x4 scale, const float wi[3], const float wo[3], f32x4 *squared, f32x4 *out)
 {
 	const f32x4 none = {0, 0, 0, 0}, slack = {DIRECTION_UNIT_SLACK, DIRECTION_UNIT_SLACK, 0, 0}, one = {1, 1, 0, 0};
-	f32x4 i = {wi[0], wi[1], wi[2], 0}, o = {wo[0], wo[1], wo[2], 0}, s, d, flat, up, length;
+	f32x4 i = load_xyz(wi), o = load_xyz(wo), s, d, flat, up, length;
 	for (bool again = false;; again = true) {
 		s = i + o;
 		d = i - o;
@@ -165,9 +180,9 @@ static inline bool direction_locate(f32x4 scale, const float wi[3], const float 
 		flat = __builtin_shufflevector(io, sd, 0, 1, 4, 5) + __builtin_shufflevector(io, sd, 2, 3, 6, 7);
 		up = __builtin_shufflevector(__builtin_shufflevector(ii, oo, 2, 6, 3, 7), __builtin_shufflevector(ss, dd, 2, 6, 3, 7), 0, 1, 4, 5);
 		length = flat + up;
-		/* |i|^2 and |o|^2 nearly 1, -i.z and -o.z below 0 */
-		const f32x4 off = abs_x4(length - one), z = none - __builtin_shufflevector(i, o, 2, 6, 3, 7);
-		if (again || all_x4(__builtin_shufflevector(off, z, 0, 1, 4, 5) < slack))
+		/* |i|^2 and |o|^2 nearly 1, 0 below i.z and o.z */
+		const f32x4 off = (f32x4)((i32x4)(length - one) & (i32x4){0x7fffffff, 0x7fffffff, 0, 0});
+		if (again || all_x4(off < __builtin_shufflevector(slack, __builtin_shufflevector(i, o, 2, 6, 3, 7), 0, 1, 4, 5)))
 			break;
 		if (!direction_usable(wi[2], length[0], wo[2], length[1]))
 			return false;
@@ -185,9 +200,19 @@ static inline bool direction_locate(f32x4 scale, const float wi[3], const float 
 		bottom[2] = d[0] * d[0];
 		sign[2] = d[1] * -d[0];
 	}
-	const f32x4 turns = quarter_turns_of_squares_x4(top, bottom, scale), root = {sqrtf(turns[0]), 0, 0, 0};
-	f32x4 at = abs_x4((f32x4)((i32x4)(scale * (f32x4){0, 0, 2, 0}) & (sign > none)) - turns);
-	at[0] = root[0];
+	const f32x4 turns = quarter_turns_of_squares_x4(top, bottom, scale);
+	*squared = turns;
+	*out = abs_x4((f32x4)((i32x4)(scale * (f32x4){0, 0, 2, 0}) & (sign > none)) - turns);
+	return true;
+}
+
+/* (h, d, p, 0). */
+static inline bool direction_locate(f32x4 scale, const float wi[3], const float wo[3], f32x4 *out)
+{
+	f32x4 squared, at;
+	if (!direction_locate_squared(scale, wi, wo, &squared, &at))
+		return false;
+	at[0] = sqrtf(squared[0]);
 	*out = at;
 	return true;
 }

@@ -72,10 +72,22 @@ static inline void KERNEL(expanded_mono)(const struct table *t, const struct loo
 	rgb[0] = rgb[1] = rgb[2] = (sum[0] + sum[2]) * p0 + (sum[1] + sum[3]) * p1;
 }
 
+static inline void KERNEL(expanded_rgb_one)(const struct table *t, const struct cell_x4 *at, float rgb[3])
+{
+	const struct lookup l = KERNEL(expanded_find)(t, (struct cell){at->i, at->j, at->k, at->h[0], at->beyond[1], at->beyond[2]});
+	KERNEL(expanded_rgb)(t, &l, rgb);
+}
+
+static inline void KERNEL(expanded_mono_one)(const struct table *t, const struct cell_x4 *at, float rgb[3])
+{
+	const struct lookup l = KERNEL(expanded_find)(t, (struct cell){at->i, at->j, at->k, at->h[0], at->beyond[1], at->beyond[2]});
+	KERNEL(expanded_mono)(t, &l, rgb);
+}
+
 TABLE_VALUES(expanded_rgb_values, KERNEL(expanded_rgb), sizeof(uint16_t), 0)
 TABLE_VALUES(expanded_mono_values, KERNEL(expanded_mono), sizeof(uint16_t), 0)
-TABLE_FORMS(expanded_rgb, KERNEL(expanded_find), KERNEL(expanded_find), KERNEL(expanded_rgb), KERNEL(expanded_rgb_values), sizeof(uint16_t), 0)
-TABLE_FORMS(expanded_mono, KERNEL(expanded_find), KERNEL(expanded_find), KERNEL(expanded_mono), KERNEL(expanded_mono_values), sizeof(uint16_t), 0)
+TABLE_FORMS(expanded_rgb, KERNEL(cell), KERNEL(expanded_rgb_one), KERNEL(expanded_find), KERNEL(expanded_rgb_values), sizeof(uint16_t), 0)
+TABLE_FORMS(expanded_mono, KERNEL(cell), KERNEL(expanded_mono_one), KERNEL(expanded_find), KERNEL(expanded_mono_values), sizeof(uint16_t), 0)
 
 const struct table_kernels KERNEL(table_expanded)[2] = {
 	{KERNEL(expanded_mono_evaluate), KERNEL(expanded_mono_nearest), KERNEL(expanded_mono_batch)},

@@ -4,7 +4,7 @@
  */
 #include "table.h"
 
-/* One look-up: four rows of phi_d in memory, and the weights. */
+/* One look-up of many: four rows of phi_d in memory, and the weights. */
 struct lookup {
 	uint32_t offset; /* from the table's start to (i, j, k) */
 	float h, d, p;   /* fractions, 0 to 1 */
@@ -21,12 +21,33 @@ struct cell {
 	float h, d, p;
 };
 
-static inline struct cell KERNEL(cell)(const struct table *t, f32x4 at)
+/* The same for a single look-up: fractions (h, ...) and (meaningless, d, p, 0). */
+struct cell_x4 {
+	uint32_t i, j, k;
+	f32x4 h, beyond;
+};
+
+/* From what direction_locate_squared gives. */
+static inline struct cell_x4 KERNEL(cell)(const struct table *t, f32x4 squared, f32x4 at)
 {
-	at = min_x4(at, t->top);
-	i32x4 cell = __builtin_convertvector(min_x4(at, t->inner), i32x4);
-	at -= __builtin_convertvector(cell, f32x4);
-	return (struct cell){(uint32_t)cell[0], (uint32_t)cell[1], (uint32_t)cell[2], at[0], at[1], at[2]};
+	at[0] = sqrtf(squared[0]);
+	const i32x4 cell = __builtin_convertvector(min_x4(at, t->inner), i32x4);
+	at = min_x4(at, t->top) - __builtin_convertvector(cell, f32x4);
+	return (struct cell_x4){(uint32_t)cell[0], (uint32_t)cell[1], (uint32_t)cell[2], at, at};
+}
+
+/* The same by more operations, but j and k are there before the root is: for who looks up what they give. */
+static inline struct cell_x4 KERNEL(cell_h_last)(const struct table *t, f32x4 squared, f32x4 at)
+{
+	const f32x4 root = sqrt_x4(squared);
+	const i32x4 cell = __builtin_convertvector(min_x4(at, t->inner), i32x4), h = __builtin_convertvector(min_x4(root, t->inner), i32x4);
+	return (struct cell_x4){
+		.i = (uint32_t)h[0],
+		.j = (uint32_t)cell[1],
+		.k = (uint32_t)cell[2],
+		.h = min_x4(root, t->top) - __builtin_convertvector(h, f32x4),
+		.beyond = min_x4(at, t->top) - __builtin_convertvector(cell, f32x4),
+	};
 }
 
 /* Pairs that are located together: the loops vectorise over them, and their cells are on the way to the cache while others are evaluated. */
@@ -92,7 +113,7 @@ static void KERNEL(locate)(const struct table *t, size_t count, const float *con
 	}
 }
 
-/* The cell of one of many points: KERNEL(cell) for a loop that vectorises. */
+/* The cell of one of many points, for a loop that vectorises. */
 static inline struct cell KERNEL(cell_of)(const float top[3], const float inner[3], float h, float d, float p)
 {
 	h = h < top[0] ? h : top[0];
@@ -140,30 +161,29 @@ __attribute__((always_inline)) static inline void KERNEL(fetch)(const struct tab
 	}
 
 /*
- * evaluate, nearest and batch of one form. FIND(table, cell) -> lookup, FIND_MANY the same for a loop; VALUE(table, lookup, rgb);
+ * evaluate, nearest and batch of one form. CELL(table, squared, at) -> cell_x4; ONE(table, cell_x4, rgb); FIND_MANY(table, cell) -> lookup, for a loop;
  * VALUES(table, lookups, next, r, g, b), to the same bits; offsets in UNIT bytes; COMPACT is 1 or 0.
  */
-#define TABLE_FORMS(name, FIND, FIND_MANY, VALUE, VALUES, UNIT, COMPACT)                                                     \
+#define TABLE_FORMS(name, CELL, ONE, FIND_MANY, VALUES, UNIT, COMPACT)                                                       \
 	static void KERNEL(name##_evaluate)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])           \
 	{                                                                                                                        \
-		f32x4 at;                                                                                                            \
-		if (direction_locate(t->scale, wi, wo, &at)) {                                                                       \
-			struct lookup lookup = FIND(t, KERNEL(cell)(t, at));                                                             \
-			VALUE(t, &lookup, rgb);                                                                                          \
+		f32x4 squared, at;                                                                                                   \
+		if (direction_locate_squared(t->scale, wi, wo, &squared, &at)) {                                                     \
+			const struct cell_x4 cell = CELL(t, squared, at);                                                                \
+			ONE(t, &cell, rgb);                                                                                              \
 		} else {                                                                                                             \
 			rgb[0] = rgb[1] = rgb[2] = 0;                                                                                    \
 		}                                                                                                                    \
 	}                                                                                                                        \
 	static void KERNEL(name##_nearest)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])            \
 	{                                                                                                                        \
-		f32x4 at;                                                                                                            \
-		if (direction_locate(t->scale, wi, wo, &at)) {                                                                       \
-			struct cell cell = KERNEL(cell)(t, at);                                                                          \
-			cell.h = cell.h < 1 ? 0.0f : 1.0f; /* 1: the last corner */                                                      \
-			cell.d = cell.d < 1 ? 0.0f : 1.0f;                                                                               \
-			cell.p = cell.p < 1 ? 0.0f : 1.0f;                                                                               \
-			struct lookup lookup = FIND(t, cell);                                                                            \
-			VALUE(t, &lookup, rgb);                                                                                          \
+		f32x4 squared, at;                                                                                                   \
+		if (direction_locate_squared(t->scale, wi, wo, &squared, &at)) {                                                     \
+			const f32x4 none = {0, 0, 0, 0}, one = {1, 1, 1, 1};                                                             \
+			struct cell_x4 cell = CELL(t, squared, at);                                                                      \
+			cell.h = SELECT_X4(cell.h < one, none, one);                                                                     \
+			cell.beyond = SELECT_X4(cell.beyond < one, none, one); /* 1: the last corner */                                  \
+			ONE(t, &cell, rgb);                                                                                              \
 		} else {                                                                                                             \
 			rgb[0] = rgb[1] = rgb[2] = 0;                                                                                    \
 		}                                                                                                                    \

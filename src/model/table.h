@@ -21,6 +21,11 @@ struct compact_place {
 	float place;             /* of the cell's start, between the two share codes */
 };
 
+/* The rows of phi_d of one theta_d and of the next. */
+struct compact_rows {
+	uint32_t offset, step; /* bytes from the slice's start to the first one, and from there to the other */
+};
+
 struct table {
 	struct table_kernels kernels;
 	f32x4 scale;      /* lattice_scale_of */
@@ -36,6 +41,7 @@ struct table {
 	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between share codes */
 	float half_reciprocal;
 	struct compact_place *place; /* of every phi_d, in the store after the cells */
+	struct compact_rows *rows;   /* of every theta_d, behind them */
 	/* (R, G, B, 0) in 1/sr = red sum times [0] + blue sum times [1] + sum of the means times [2]: of codes and means, with their weights */
 	f32x4 mix[3];
 
