@@ -83,6 +83,7 @@ struct fill_level {
 };
 
 struct spectrum_term;
+struct compact_rows_plan;
 
 struct kernels {
 	/*
@@ -168,6 +169,11 @@ struct kernels {
 	 */
 	void (*default_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
 	                      const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride);
+	/*
+	 * A row of values in the compact form, its first block at `block`, but for the shares' codes: three of R and three of B for every block
+	 * go to knots, as they are.
+	 */
+	void (*compact_row)(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block, float *const knots[2]);
 	/* field_f = sum over c of rotation[f][c] x_c, in place. */
 	void (*default_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
 	/*

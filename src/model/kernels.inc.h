@@ -12,6 +12,7 @@
 #include "cosines.inc.h"
 #include "spectrum_inverse.inc.h"
 #include "default.inc.h"
+#include "compact_row.inc.h"
 
 const struct kernels KERNEL(kernels) = {
 	.density_row = KERNEL(density_row),
@@ -33,6 +34,7 @@ const struct kernels KERNEL(kernels) = {
 	.cdf97_forward = KERNEL(cdf97_forward),
 	.cdf97_plane = KERNEL(cdf97_plane),
 	.spectrum_spread = KERNEL(spectrum_spread),
+	.compact_row = KERNEL(compact_row),
 	.default_logs = KERNEL(default_logs),
 	.default_largest = KERNEL(default_largest),
 	.default_moments = KERNEL(default_moments),
