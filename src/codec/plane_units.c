@@ -7,10 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "default_planes.h"
-#include "plane_contexts.h"
-
-#define INLINE inline __attribute__((always_inline))
+#include "plane_row.h"
 
 static INLINE uint32_t size_of(const struct plane_contexts *c, uint32_t v)
 {
@@ -21,26 +18,6 @@ static INLINE uint32_t harmonic_class(uint32_t m)
 {
 	return m < 2 ? m : m < 4 ? 2 : m < 8 ? 3 : m < 16 ? 4 : m < 32 ? 5 : m < 64 ? 6 : 7;
 }
-
-/* 0: zero, 1: less than one and a half times the plane's value, 2: more. */
-static INLINE uint32_t tier(uint32_t near)
-{
-	return (uint32_t)(near != 0) + (uint32_t)(near >= 6);
-}
-
-/* One row of a block in units of the plane's value. Comparisons are of signed numbers, which every processor has; no single value needs the sign. */
-typedef uint16_t cells8 __attribute__((vector_size(2 * BLOCK_EDGE)));
-typedef int16_t signed8 __attribute__((vector_size(2 * BLOCK_EDGE)));
-
-static INLINE cells8 cells_load(const uint16_t *from)
-{
-	cells8 v;
-	memcpy(&v, from, sizeof v);
-	return v;
-}
-
-/* 1 where v >= least, else 0: subtracted, as what is true is -1. */
-#define CELLS_FROM(v, least) (-(cells8)((signed8)(v) > (int16_t)((least) - 1)))
 
 /* Where one unit works. */
 struct place {
@@ -53,27 +30,10 @@ struct place {
 	uint32_t *slot;                /* of this field and harmonic */
 	uint8_t *active;
 	const uint32_t *other_slot[2]; /* the other fields' */
-	uint32_t other_behind[2];      /* 1 where that field's plane is still to be coded, else 0 */
 	const uint32_t *first_slot;
 	const uint8_t *first_active, *second_active; /* of fields 0 and 1, for fields after them */
 	uint32_t *bands;                             /* bands_active of this field and harmonic, and those of the two fields likewise */
 	uint32_t first_bands, second_bands;
-};
-
-/*
- * The block at hand with a ring of its neighbours' cells, cell (y, x) at [y + 1][x + 1], and the blocks at the same place in
- * other harmonics and fields. Lanes behind the band's end are 0. All in units of this plane's value: what was last coded in the plane
- * above counts twice.
- */
-enum { VIEW_STRIDE = 16 };
-struct block_view {
-	uint16_t near[BLOCK_EDGE + 2][VIEW_STRIDE];
-	uint8_t sign[BLOCK_EDGE + 2][VIEW_STRIDE];
-	const struct plane_block *before2, *before, *after, *after2, *other[2], *first;
-	const uint16_t *parent; /* of cell (0, 0) */
-	uint32_t *known;        /* the block's own */
-	const int32_t *level;   /* encoder only */
-	uint32_t parent_shift, orientation, band;
 };
 
 static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_t b, uint32_t bit)
@@ -89,6 +49,27 @@ static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_
 	const uint32_t others = (u->first_bands >> b & 1) + (u->second_bands >> b & 1);
 	return mixed_bit_pair(u->coder, decode, &c->mixed.band[0][(((near * 3 + alike) * 2 + (parent | (above < 0))) * 3 + others) * 2 + u->chroma],
 	                      &c->mixed.band[1][(near + alike) * BANDS_MAX + b], bit);
+}
+
+/*
+ * The flags of a harmonic with no active band, in it or near it, up to the first that is 1: its band, or their count. Most units hold
+ * nothing else.
+ */
+static INLINE uint32_t code_quiet_bands(const struct place *u, int decode, const uint8_t *top)
+{
+	const struct bands *bands = &u->planes->bands;
+	mixer_context *context = &u->contexts->quiet.band[u->harmonic_class * 2 + u->chroma], state = *context;
+	uint32_t b = 0, bit = 0;
+
+	for (; b < bands->count; b++) {
+		bit = !decode && top[bands->band[b].block_at - bands->band[b].block_stride - 1] > u->plane;
+		bit = mixed_bit_with(u->coder, decode, state >> 16, bit);
+		state = mixer_context_learnt(u->coder->tables, state, bit, MIXER_SEEN_MAX_ALONE);
+		if (bit)
+			break;
+	}
+	*context = state;
+	return b;
 }
 
 /* `above`: the active blocks of the row of parents; NULL in band 0. */
@@ -160,6 +141,8 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 	v->other[0] = pool + u->other_slot[0][at];
 	v->other[1] = pool + u->other_slot[1][at];
 	v->first = pool + u->first_slot[at];
+	v->other_behind[0] = u->field == 0;
+	v->other_behind[1] = u->field < 2;
 	v->known = own->known;
 	v->parent = pool->near;
 	v->parent_shift = band->parent_shift;
@@ -194,58 +177,6 @@ static INLINE uint32_t code_sign(const struct place *u, int decode, const struct
 		&c->mixed.sign[3][(first * 2 + (u->field > 1)) * BANDS_MAX + v->band],
 	};
 	return mixed_bit(u->coder, decode, context, &c->sign_weights[u->chroma], bit);
-}
-
-/*
- * What stands around the cells of one row of a block before the row is coded, eight lanes at once: everything but for what changes
- * in the row itself.
- */
-struct row_view {
-	uint16_t around[BLOCK_EDGE], along[BLOCK_EDGE];
-	uint16_t rest[BLOCK_EDGE];   /* 0 where along, the parent and the other fields are */
-	uint16_t beyond[BLOCK_EDGE]; /* of the first context of a zero bit: the parent's and the other fields' share */
-	uint16_t tiers[BLOCK_EDGE];  /* of the second: all but the left neighbour's */
-};
-
-/* Returns 0 when nothing around any of the row's cells, nor the cells themselves, are known to differ from 0; then *out is not set. */
-static INLINE int row_look(const struct place *u, const struct block_view *v, uint32_t y, uint32_t width, struct row_view *out)
-{
-	const uint16_t *k = &v->near[y + 1][1];
-	const uint32_t at = y * BLOCK_EDGE;
-	const cells8 left = cells_load(k - 1), here = cells_load(k), right = cells_load(k + 1);
-	const cells8 up = cells_load(k - VIEW_STRIDE), down = cells_load(k + VIEW_STRIDE);
-	const cells8 corners = (cells_load(k - VIEW_STRIDE - 1) + cells_load(k - VIEW_STRIDE + 1)) +
-	                       (cells_load(k + VIEW_STRIDE - 1) + cells_load(k + VIEW_STRIDE + 1));
-	const cells8 before2 = cells_load(v->before2->near + at), before = cells_load(v->before->near + at);
-	const cells8 after = 2 * cells_load(v->after->near + at), after2 = 2 * cells_load(v->after2->near + at);
-	const cells8 others = (cells_load(v->other[0]->near + at) << (uint16_t)u->other_behind[0]) +
-	                      (cells_load(v->other[1]->near + at) << (uint16_t)u->other_behind[1]);
-	const cells8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
-	cells8 parent = cells_load(v->parent + (y >> v->parent_shift) * BLOCK_EDGE);
-
-	if (v->parent_shift)
-		parent = __builtin_shufflevector(parent, parent, 0, 0, 1, 1, 2, 2, 3, 3);
-	parent &= (cells8)((signed8)lane < (int16_t)width); /* the parent's band may be wider */
-	const cells8 around = 2 * ((left + right) + (up + down)) + corners, along = 2 * (before2 + after2) + (before + after);
-	const cells8 rest = along | others | parent, any = here | around | rest;
-	uint64_t word[2];
-	memcpy(word, &any, sizeof word);
-	if (!(word[0] | word[1]))
-		return 0;
-	const cells8 size_quarter = CELLS_FROM(parent, 4) + CELLS_FROM(parent, 26) + CELLS_FROM(parent, 162);
-	const cells8 size_half = ((CELLS_FROM(others, 2) + CELLS_FROM(others, 4)) + (CELLS_FROM(others, 11) + CELLS_FROM(others, 26))) +
-	                         ((CELLS_FROM(others, 64) + CELLS_FROM(others, 162)) + CELLS_FROM(others, 407));
-	const cells8 beyond = (size_quarter * (SIZES / 2) + size_half) * (SIZES * SIZES * 2) + (uint16_t)u->chroma;
-#define TIER(v) (CELLS_FROM(v, 1) + CELLS_FROM(v, 6))
-	const cells8 ring = ((TIER(before2) * 3 + TIER(after2)) * 3 + TIER(before)) * 3 + TIER(after);
-	const cells8 tiers = ring * 81 + ((TIER(up) * 3 + TIER(right)) * 3 + TIER(down));
-#undef TIER
-	memcpy(out->around, &around, sizeof around);
-	memcpy(out->along, &along, sizeof along);
-	memcpy(out->rest, &rest, sizeof rest);
-	memcpy(out->beyond, &beyond, sizeof beyond);
-	memcpy(out->tiers, &tiers, sizeof tiers);
-	return 1;
 }
 
 static INLINE uint32_t quiet_index(const struct place *u, uint32_t b, uint32_t fresh)
@@ -321,7 +252,7 @@ static INLINE void code_row(const struct place *u, int decode, struct block_view
 	struct row_view row;
 	uint32_t start = 0, change = 0; /* twice what has been added to the left neighbour since the look */
 
-	if (!row_look(u, v, y, width, &row)) {
+	if (!row_look(v, y, width, u->chroma, &row)) {
 		start = code_quiet_row(u, decode, v, y, width, fresh);
 		if (start == width)
 			return;
@@ -361,14 +292,20 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 		.planes = p, .contexts = p->contexts, .coder = coder, .plane = plane, .field = field, .harmonic = harmonic,
 		.chroma = field > 0, .depth = plane == 0 ? 0 : plane < 3 ? 1 : 2, .harmonic_class = harmonic_class(harmonic),
 		.blocks = p->bands.blocks, .slot = p->slot[field] + block0, .active = p->active[field] + block0,
-		.other_slot = {p->slot[field == 0] + block0, p->slot[field == 2 ? 1 : 2] + block0}, .other_behind = {field == 0, field < 2},
+		.other_slot = {p->slot[field == 0] + block0, p->slot[field == 2 ? 1 : 2] + block0},
 		.first_slot = p->slot[0] + block0, .first_active = p->active[0] + block0, .second_active = p->active[1] + block0,
 		.bands = p->bands_active[field] + harmonic + 2, .first_bands = field > 0 ? p->bands_active[0][harmonic + 2] : 0,
 		.second_bands = field > 1 ? p->bands_active[1][harmonic + 2] : 0,
 	};
 	const uint8_t *top = decode ? NULL : p->top[field] + block0;
 
-	for (uint32_t b = 0; b < p->bands.count; b++) {
+	uint32_t first = 0;
+	if (!(u.bands[-2] | u.bands[-1] | u.bands[0] | u.bands[1] | u.bands[2] | u.first_bands | u.second_bands)) {
+		first = code_quiet_bands(&u, decode, top);
+		if (first < p->bands.count)
+			*u.bands = 1u << first;
+	}
+	for (uint32_t b = first; b < p->bands.count; b++) {
 		const struct band *band = &p->bands.band[b];
 		if (!(*u.bands >> b & 1)) {
 			if (!code_band_flag(&u, decode, b, !decode && top[band->block_at - band->block_stride - 1] > plane))

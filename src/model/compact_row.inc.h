@@ -15,7 +15,8 @@ static inline float KERNEL(sum4)(f32x4 v)
 }
 
 /* The codes of both shares; a cell's errors count 1e-6 to 1: little where it is dark. */
-static void KERNEL(compact_fit_weighted)(const struct compact_hats *hats, const float *const share[2], const float *mean, float dark, float *const codes[2])
+static void KERNEL(compact_fit_weighted)(const struct compact_hats *hats, const float *const share[2], const float *mean, float dark,
+                                         float *const codes[2])
 {
 	f32x4 system[5] = {{0}}, right[2][3] = {{{0}}};
 	float m[5];
