@@ -1,6 +1,7 @@
 #include "default_encode.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "../error.h"
 #include "../model/fast_math.h"
@@ -31,6 +32,7 @@ struct attempt {
 	const struct rate *rate;
 	double bias;           /* what was wanted for each byte foreseen in the last attempt that was complete */
 	double room;           /* bytes */
+	uint32_t units;        /* to be coded at most */
 	double taken[RATE_PLANES]; /* at the ends of planes */
 	double foreseen;       /* what all units will take, foreseen before the lowest plane; 0 where it was not */
 	double wanted;         /* what they took, or will where the attempt is not complete */
@@ -59,7 +61,7 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 {
 	struct range_encoder *encoder = coder->encoder, kept;
 	struct byte_buffer *out = &e->stream[l];
-	const uint32_t units = planes_units(e->planes);
+	const uint32_t units = a->units;
 	const bool last = l + 1 == e->layers;
 
 	write_u32(out, 0); /* the end, stored below */
@@ -93,8 +95,8 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 	return true;
 }
 
-/* Everything with e->step, as far as the limits allow. */
-static bp_status encode_once(struct encoding *e, struct attempt *a, bp_error *error)
+/* The levels that are at hand, as far as the limits allow. */
+static bp_status levels_encode(struct encoding *e, struct attempt *a, bp_error *error)
 {
 	struct range_encoder encoder;
 	struct mixed_coder coder = { .encoder = &encoder, .tables = mixer_tables_get() };
@@ -102,8 +104,6 @@ static bp_status encode_once(struct encoding *e, struct attempt *a, bp_error *er
 	uint32_t unit = 0;
 
 	encoding_clear(e);
-	planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING);
-	planes_start(e->planes, planes_settle(e->planes, ROUNDING, true, e->centre));
 	a->foreseen = 0;
 	a->complete = true;
 	e->bytes = e->head_bytes;
@@ -116,7 +116,17 @@ static bp_status encode_once(struct encoding *e, struct attempt *a, bp_error *er
 	return BP_OK;
 }
 
-bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
+/* Everything with e->step. */
+static bp_status encode_once(struct encoding *e, struct attempt *a, bp_error *error)
+{
+	planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING);
+	planes_start(e->planes, planes_settle(e->planes, ROUNDING, true, e->centre));
+	a->units = planes_units(e->planes);
+	return levels_encode(e, a, error);
+}
+
+/* A step is sought for the model's coefficients. */
+static bp_status encode_sought(struct encoding *e, int effort, bp_error *error)
 {
 	const struct search search = search_for(effort);
 	const uint32_t limit = e->limit[e->layers - 1];
@@ -159,4 +169,82 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 		return encode_once(e, &a, error);
 	}
 	return BP_OK;
+}
+
+/* The lowest plane of a level's harmonic that is coded before unit `end`. */
+static uint32_t lowest_of(const struct encoding *e, uint32_t end, struct default_level level)
+{
+	const uint32_t p = e->planes->dims.phi_d, cells = (uint32_t)lattice_cells(e->planes->dims);
+	return default_lowest_plane(e->planes->planes, p, end, level.at / cells, spectrum_harmonic(p, level.at % cells % p));
+}
+
+/* The levels that the model has from the start. */
+static bp_status encode_found(struct encoding *e, bp_error *error)
+{
+	struct attempt a = {.units = e->model->end[0]};
+	float unused[2];
+
+	planes_take(e->planes, e->model->levels, e->model->level_count);
+	planes_start(e->planes, planes_settle(e->planes, ROUNDING, false, unused));
+	e->step = e->model->step;
+	e->centre[0] = e->model->centre[0];
+	e->centre[1] = e->model->centre[1];
+	return levels_encode(e, &a, error);
+}
+
+/* The sum of the squares by which what was coded differs from the model's coefficients. */
+static bp_status sought_squares(const struct encoding *e, double *squares, bp_error *error)
+{
+	const size_t cells = lattice_cells(e->planes->dims);
+	const struct default_model coded = {.step = e->step, .centre = {e->centre[0], e->centre[1], DEFAULT_CENTRE_BELOW}};
+	struct default_level *levels = NULL;
+	uint32_t count = 0;
+	const bp_status status = planes_collect(e->planes, e->end[e->layers - 1], &levels, &count, error);
+
+	if (status)
+		return status;
+	*squares = 0;
+	for (int f = 0; f < 3; f++)
+		for (size_t i = 0; i < cells; i++)
+			*squares += (double)e->model->coefficient[f][i] * (double)e->model->coefficient[f][i];
+	for (uint32_t n = 0; n < count; n++) {
+		const double c = (double)e->model->coefficient[levels[n].at / cells][levels[n].at % cells];
+		const double missed = c - (double)default_level_value(&coded, levels[n].level, lowest_of(e, e->end[e->layers - 1], levels[n]));
+		*squares += missed * missed - c * c;
+	}
+	free(levels);
+	return BP_OK;
+}
+
+/* The same of the levels that the model has from the start: what they miss, and what the budget cuts off. */
+static double found_squares(const struct encoding *e)
+{
+	double squares = e->model->missed;
+
+	for (uint32_t n = 0; n < e->model->level_count; n++) {
+		const struct default_level level = e->model->levels[n];
+		const float whole = default_level_value(e->model, level.level, lowest_of(e, e->model->end[0], level));
+		const float coded = default_level_value(e->model, level.level, lowest_of(e, e->end[e->layers - 1], level));
+		squares += (double)(whole - coded) * (double)(whole - coded);
+	}
+	return squares;
+}
+
+bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
+{
+	double sought = 0;
+	bp_status status;
+
+	if (!e->model->levels)
+		return encode_sought(e, effort, error);
+	/* A thousandth of the error that the table was decoded with is nothing that more bytes should tell. */
+	const double nothing = 0.001 / 12 * (double)e->model->step * (double)e->model->step * e->model->level_count;
+	/* Where there is room for much more than the levels tell, or for much less, a step of its own serves better. */
+	status = encode_found(e, error);
+	const double found = found_squares(e);
+	if (!status)
+		status = encode_sought(e, effort, error);
+	if (!status)
+		status = sought_squares(e, &sought, error);
+	return status || (sought < found && found > nothing) ? status : encode_found(e, error);
 }

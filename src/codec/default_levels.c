@@ -16,36 +16,72 @@ static inline int any_above(const float *x, uint32_t least_bits)
 	return any != 0;
 }
 
-/* The coefficient's level, where it is not 0, in its block. */
-static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, float coefficient,
-                        float inverse, float rounding)
+/* The block of a coefficient of `band` that has a level; it gets a place in the pool where it has none. */
+static struct level_block *level_block_at(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x)
 {
 	const size_t at = (size_t)(harmonic + 2) * p->bands.blocks + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
-	const uint32_t place = y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE, most = (1u << DEFAULT_PLANES_MAX) - 1;
-	const float size = fabsf(coefficient) * inverse;
-	uint32_t level = (uint32_t)(size + rounding), *slot = &p->level_slot[field][at];
+	uint32_t *slot = &p->level_slot[field][at];
 
-	if (!level)
-		return;
-	level = level < most ? level : most;
 	if (!*slot) {
 		*slot = p->levels_count++;
 		memset(&p->levels[*slot], 0, sizeof *p->levels);
 	}
-	p->levels[*slot].level[place] = coefficient < 0 ? -(int32_t)level : (int32_t)level;
-	p->levels[*slot].over[place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
+	return &p->levels[*slot];
+}
+
+static uint32_t place_in_block(uint32_t y, uint32_t x)
+{
+	return y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
+}
+
+/* The coefficient's level, where it is not 0, in its block. */
+static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, float coefficient,
+                        float inverse, float rounding)
+{
+	const uint32_t place = place_in_block(y, x), most = (1u << DEFAULT_PLANES_MAX) - 1;
+	const float size = fabsf(coefficient) * inverse;
+	uint32_t level = (uint32_t)(size + rounding);
+
+	if (!level)
+		return;
+	level = level < most ? level : most;
+	struct level_block *block = level_block_at(p, field, harmonic, band, y, x);
+	block->level[place] = coefficient < 0 ? -(int32_t)level : (int32_t)level;
+	block->over[place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
+}
+
+static void levels_clear(struct planes *p)
+{
+	p->levels_count = 1;
+	for (int f = 0; f < 3; f++)
+		memset(p->level_slot[f], 0, (size_t)(p->dims.phi_d + 4) * p->bands.blocks * sizeof *p->level_slot[f]);
+}
+
+void planes_take(struct planes *p, const struct default_level *levels, uint32_t count)
+{
+	const uint32_t lanes = p->dims.phi_d, cells = (uint32_t)lattice_cells(p->dims);
+
+	levels_clear(p);
+	for (uint32_t n = 0; n < count; n++) {
+		const uint32_t field = levels[n].at / cells, row = levels[n].at % cells / lanes, lane = levels[n].at % lanes;
+		const uint32_t i = row / p->dims.theta_d, j = row % p->dims.theta_d;
+		const struct band *band = p->bands.band;
+		while (i < band->row || i >= band->row + band->rows || j < band->column || j >= band->column + band->columns)
+			band++;
+		const uint32_t y = i - band->row, x = j - band->column;
+		level_block_at(p, field, spectrum_harmonic(lanes, lane), band, y, x)->level[place_in_block(y, x)] = levels[n].level;
+	}
 }
 
 void planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding)
 {
-	const uint32_t lanes = p->dims.phi_d, even = (lanes + 1) / 2;
+	const uint32_t lanes = p->dims.phi_d;
 	const float least = (1 - rounding) * step * 0.999f, inverse = 1 / step;
 	uint32_t least_bits;
 
 	memcpy(&least_bits, &least, sizeof least_bits);
-	p->levels_count = 1;
-	for (uint32_t f = 0; f < 3; f++) {
-		memset(p->level_slot[f], 0, (size_t)(lanes + 4) * p->bands.blocks * sizeof *p->level_slot[f]);
+	levels_clear(p);
+	for (uint32_t f = 0; f < 3; f++)
 		for (uint32_t b = 0; b < p->bands.count; b++) {
 			const struct band *band = &p->bands.band[b];
 			for (uint32_t y = 0; y < band->rows; y++)
@@ -56,11 +92,10 @@ void planes_quantise(struct planes *p, float *const coefficient[3], float step, 
 							lane += 15;
 							continue;
 						}
-						level_place(p, f, lane < even ? 2 * lane : 2 * (lane - even) + 1, band, y, x, row[lane], inverse, rounding);
+						level_place(p, f, spectrum_harmonic(lanes, lane), band, y, x, row[lane], inverse, rounding);
 					}
 				}
 		}
-	}
 }
 
 /* Counts the levels of one band of one harmonic and stores the first `room` of them. */

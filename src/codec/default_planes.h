@@ -62,6 +62,9 @@ void planes_start(struct planes *planes, uint32_t count);
 /* Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign. planes_settle must follow. */
 void planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding);
 
+/* Encoder: levels as they are, in any order. planes_settle must follow, without thinning; what it says of centres means nothing. */
+void planes_take(struct planes *planes, const struct default_level *levels, uint32_t count);
+
 /*
  * default_settle.c: counts the planes that the levels need and returns them; `thin`: levels of 1 with little around them become 0 before, the
  * less there is the larger they may be, as they cost most to place. `rounding` is that of planes_quantise.

@@ -21,8 +21,6 @@ static const struct section_kind KINDS[] = {
 static const uint32_t PREVIEWS[] = { 4096, 16384, 65536, 262144, 1048576 };
 enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
-static const float CENTRE_BELOW = 0.4f;  /* where a level lies whose lower planes are missing, as a share of them */
-
 /* ---- encoding ---- */
 
 static void fields_write(const struct encoding *e, struct section_list *sections)
@@ -37,7 +35,7 @@ static void fields_write(const struct encoding *e, struct section_list *sections
 	write_f32(out, e->step);
 	write_f32(out, e->centre[0]);
 	write_f32(out, e->centre[1]);
-	write_f32(out, CENTRE_BELOW);
+	write_f32(out, DEFAULT_CENTRE_BELOW);
 	write_u32(out, e->planes->planes);
 }
 
@@ -61,7 +59,7 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	decoded->step = e->step;
 	decoded->centre[0] = e->centre[0];
 	decoded->centre[1] = e->centre[1];
-	decoded->centre[2] = CENTRE_BELOW;
+	decoded->centre[2] = DEFAULT_CENTRE_BELOW;
 	decoded->planes = e->planes->planes;
 	memcpy(decoded->end, e->end, sizeof decoded->end);
 	*out = copy;

@@ -13,11 +13,13 @@
 #include <string.h>
 
 #include "../error.h"
+#include "../memory.h"
 #include "../stage.h"
 #include "default_model.h"
+#include "default_origin.h"
+#include "default_sample.h"
+#include "fast_math.h"
 #include "kernels.h"
-#include "robust.h"
-#include "select.h"
 #include "spectrum.h"
 
 void default_free(struct default_model *model)
@@ -93,139 +95,38 @@ static void rotation_find(float *const channel[3], size_t rows, size_t lanes, fl
 	}
 }
 
-/*
- * Cells that stand for all: SAMPLE of them at least, where there are as many, spread evenly over all angles. Which ones depends
- * on validity alone.
- */
-enum { SAMPLE = 1 << 16 };
-
-struct sample {
-	double *x;    /* the achromatic value; owns the block */
-	double *y[3]; /* the channels, one behind the other, n each */
-	size_t n;
-};
-
-static size_t common_divisor(size_t a, size_t b)
-{
-	while (b) {
-		const size_t rest = a % b;
-		a = b;
-		b = rest;
-	}
-	return a;
-}
-
-static bp_status sample_draw(const struct lattice *lattice, struct sample *out, bp_error *error)
-{
-	const size_t cells = lattice_cells(lattice->dims), p = lattice->dims.phi_d;
-	size_t every = lattice->valid_count / SAMPLE + 1, n = 0; /* one cell of so many; no common factor: another phi_d in every row */
-	double *y[3];
-
-	while (common_divisor(every, p) != 1)
-		every++;
-	const size_t room = cells / every + 1;
-	out->x = malloc(room * 4 * sizeof *out->x);
-	if (!out->x)
-		return error_memory(error, room * 4 * sizeof *out->x);
-	for (size_t c = 0; c < 3; c++)
-		y[c] = out->x + (c + 1) * room;
-	for (size_t i = 0; i < cells; i += every) {
-		/* Within the stride, the first valid cell: where few are valid, none is passed over. */
-		size_t at = i;
-		const size_t last = i + every < cells ? i + every : cells;
-		while (at < last && !lattice->valid[at])
-			at++;
-		if (at == last)
-			continue;
-		for (int c = 0; c < 3; c++)
-			y[c][n] = lattice->rgb[c][at];
-		out->x[n] = y[0][n] / 3 + y[1][n] / 3 + y[2][n] / 3;
-		n++;
-	}
-	out->n = n;
-	for (size_t c = 0; c < 3; c++) {
-		out->y[c] = out->x + (c + 1) * n;
-		memmove(out->y[c], y[c], n * sizeof *y[c]);
-	}
-	return BP_OK;
-}
-
-/*
- * The paper's regression of each channel on the measured achromatic value. The fields carry colour, so these six numbers are a summary
- * here: a sample gives them in a twentieth of the time. On the nine surrogates of manifests/paper-nine.txt the slopes differ by 0.7 % in
- * the mean from those of all cells, at the worst by 14 % (alum-bronze's blue, where all cells do not converge and the sample does).
- */
-static bp_status colour_fit(const struct sample *sample, struct model *model, bp_error *error)
-{
-	for (int c = 0; c < 3; c++) {
-		struct robust_fit fit;
-		bp_status status = robust_fit(sample->x, sample->y[c], sample->n, &fit, error);
-		if (status)
-			return status;
-		model->colour[c] = (struct colour_fit){.diffuse = fit.intercept, .specular = fit.slope, .iterations = fit.iterations,
-		                                       .converged = fit.converged, .rejected = (double)fit.rejected / (double)sample->n};
-	}
-	return BP_OK;
-}
-
-/*
- * Where the logarithm turns linear: a hundredth of the geometric mean of the median and the 85 % point of all channels' values.
- * The median alone is too low for mirrors and too high for matte white, a higher point the other way round (VARIANTS.md).
- * What lies below 2^-24 of the largest value counts as that: so the unit is at least 2^-31 of the largest, and where half of a
- * table is dark it does not hang on how dark. Square roots are exact to the last bit, powers would not be. Rearranges the sample.
- */
-static double unit_for(struct sample *sample, double largest)
-{
-	double *v = sample->y[0];
-	const size_t last = 3 * sample->n - 1, half = last / 2, high = last / 20 * 17 + last % 20 * 17 / 20;
-	const double least = largest * 0x1p-24;
-
-	if (largest == 0)
-		return 1;
-	const double median = select_kth(v, last + 1, half);
-	const double upper = select_kth(v + half, last + 1 - half, high - half);
-	const double unit = sqrt(fmax(median, least)) * sqrt(fmax(upper, least)) / 100;
-	return fmin(fmax(unit, DEFAULT_UNIT_LEAST), DEFAULT_UNIT_MOST);
-}
-
-/* The channels by the sums of their values: from here on it does not matter which is called red. */
-static void channels_order(const struct sample *sample, int order[3])
-{
-	double sum[3] = {0};
-	for (int c = 0; c < 3; c++) {
-		for (size_t i = 0; i < sample->n; i++)
-			sum[c] += sample->y[c][i];
-		int at = c;
-		for (; at > 0 && sum[order[at - 1]] < sum[c]; at--)
-			order[at] = order[at - 1];
-		order[at] = c;
-	}
-}
-
-static double largest_value(const struct lattice *lattice)
+/* The channels' logarithms, channel order[k] in coefficient[k], with values for the invalid cells; and the base. */
+static bp_status logs_make(const struct lattice *lattice, const int order[3], struct default_model *fitted, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims);
-	double largest = 0;
-	for (int c = 0; c < 3; c++)
-		largest = fmax(largest, kernels_get()->default_largest(lattice->rgb[c], lattice->valid, cells));
-	return largest;
+
+	stage_enter(STAGE_CLEAN);
+	for (int k = 0; k < 3; k++) {
+		const double sum = kernels_get()->default_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit, fitted->coefficient[k]);
+		fitted->base[order[k]] = (float)(sum / (double)lattice->valid_count);
+	}
+	return default_fill(lattice->dims, lattice->valid, fitted->coefficient, error);
 }
 
-/* The three tables of logarithms, still channels in the order given, become the spectra of the fields. */
-static bp_status fields_make(struct lattice_dims d, struct spectrum *spectrum, const int order[3], bool denoise, struct default_model *fitted,
-                             bp_error *error)
+/* Tables of logarithms become spectra, still of channels; rotation: their axes, of the channels in that order. */
+static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const int order[3], struct default_model *fitted, float rotation[3][3])
 {
-	const size_t rows = (size_t)d.theta_h * d.theta_d;
-	float rotation[3][3]; /* of the channels in that order */
-	bp_status status = BP_OK;
-
 	stage_enter(STAGE_TRANSFORM);
 	for (int k = 0; k < 3; k++)
 		spectrum_forward(spectrum, fitted->coefficient[k], fitted->base[order[k]]);
-	rotation_find(fitted->coefficient, rows, d.phi_d, rotation);
+	rotation_find(fitted->coefficient, (size_t)d.theta_h * d.theta_d, d.phi_d, rotation);
+}
+
+/* Spectra of channels become those of fields. */
+static bp_status fields_make(struct lattice_dims d, const int order[3], const float rotation[3][3], bool denoise, struct default_model *fitted,
+                             bp_error *error)
+{
+	const size_t rows = (size_t)d.theta_h * d.theta_d;
+	bp_status status = BP_OK;
+
 	for (size_t r = 0; r < rows; r++) {
 		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d, fitted->coefficient[2] + r * d.phi_d};
-		kernels_get()->default_rotate(x, d.phi_d, (const float(*)[3])rotation);
+		kernels_get()->default_rotate(x, d.phi_d, rotation);
 	}
 	for (int f = 0; f < 3; f++)
 		for (int k = 0; k < 3; k++)
@@ -233,6 +134,103 @@ static bp_status fields_make(struct lattice_dims d, struct spectrum *spectrum, c
 	stage_enter(STAGE_CLEAN);
 	for (int f = 0; !status && f < 3 && denoise; f++)
 		status = default_denoise(d, fitted->coefficient[f], &fitted->noisy, error);
+	return status;
+}
+
+enum { UNIT_TURNS = 12 };
+static const double UNIT_NEAR = 1e-6;                           /* of its log2: nothing is left to mend */
+static const double MISSED_LITTLE = 0.0005, MISSED_MOST = 0.02; /* default_grid_missed: no unit is better; with the best unit, good enough */
+
+/* A search for the unit: its log2, and by how much the grid told that it was too large; those of the turn before. */
+struct unit_search {
+	double reach; /* how far off it may be */
+	double before, wrong;
+};
+
+/* The unit becomes what the grid tells of it. */
+static bp_status unit_mend(const struct lattice *lattice, struct spectrum *spectrum, const int order[3], const struct default_origin *origin,
+                           struct unit_search *search, struct default_model *fitted, bp_error *error)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	float *block = memory_alloc(3 * cells * sizeof *block), *const slope[3] = {block, block + cells, block + 2 * cells};
+	const struct grid_evidence evidence = {lattice->dims, fitted->coefficient, origin->exact};
+
+	if (!block)
+		return error_memory(error, 3 * cells * sizeof *block);
+	for (int k = 0; k < 3; k++) {
+		const double *b = lattice->rgb[order[k]];
+		for (size_t i = 0; i < cells; i++) /* of log2(1 + b / unit) by log2(unit) */
+			slope[k][i] = lattice->valid[i] ? (float)(-b[i] / (fitted->unit + b[i])) : 0;
+		spectrum_forward(spectrum, slope[k], 0);
+	}
+	const double wrong = default_grid_unit_error(&evidence, &origin->grid, slope, search->reach), now = fast_log2(fitted->unit);
+	free(block);
+	/* What is far off is taken for what is near another level, so too little is told: the secant says how much too little. */
+	const double secant = search->wrong != wrong ? (now - search->before) / (wrong - search->wrong) : 1;
+	const double factor = search->wrong == 0 ? 1 : fmin(fmax(secant, 0.3), 2.5);
+	*search = (struct unit_search){.reach = fmin(4 * fabs(wrong), search->reach), .before = now, .wrong = wrong};
+	fitted->unit = fmin(fmax(fast_exp2(now - fmin(fmax(factor * wrong, -1), 1)), DEFAULT_UNIT_LEAST), DEFAULT_UNIT_MOST);
+	return BP_OK;
+}
+
+/*
+ * Looks whether the table was decoded from a record (default_origin.h). Its unit is near that record's where the same cells are there, but a
+ * statistic all the same: where there is a grid, better ones are tried.
+ */
+static bp_status origin_seek(const struct lattice *lattice, struct spectrum *spectrum, const int order[3], float rotation[3][3],
+                             struct default_model *fitted, struct default_origin *origin, bool *found, bp_error *error)
+{
+	const double unit = fitted->unit;
+	struct unit_search search = {.reach = 1};
+	bp_status status = BP_OK;
+
+	for (int turn = 0; !status; turn++) {
+		const float base[3] = {fitted->base[order[0]], fitted->base[order[1]], fitted->base[order[2]]};
+		const bool last = turn == UNIT_TURNS || (turn > 0 && fabs(search.wrong) < UNIT_NEAR);
+		status = default_origin_find(lattice, fitted->coefficient, base, (const float(*)[3])rotation, origin, error);
+		*found = !status && origin->missed < (last ? MISSED_MOST : MISSED_LITTLE);
+		if (status || *found || (turn == 0 && isinf(origin->missed)))
+			return status;
+		const bool end = last || isinf(origin->missed);
+		if (end)
+			fitted->unit = unit;
+		else
+			status = unit_mend(lattice, spectrum, order, origin, &search, fitted, error);
+		if (!status)
+			status = logs_make(lattice, order, fitted, error);
+		if (!status)
+			spectra_make(lattice->dims, spectrum, order, fitted, rotation);
+		if (end)
+			return status;
+		default_origin_free(origin);
+	}
+	return status;
+}
+
+/*
+ * Where the table was decoded, the model gets that record's levels, and the spectra that are at hand are made anew with its base; *rotation
+ * becomes that record's.
+ */
+static bp_status origin_restore(const struct lattice *lattice, struct spectrum *spectrum, const int order[3], float rotation[3][3],
+                                struct default_model *fitted, bp_error *error)
+{
+	struct default_origin origin;
+	bool found;
+	bp_status status = origin_seek(lattice, spectrum, order, rotation, fitted, &origin, &found, error);
+
+	if (!status && found) {
+		status = logs_make(lattice, order, fitted, error);
+		if (!status)
+			status = default_origin_restore(lattice, order, &origin, spectrum, fitted->coefficient, fitted, error);
+		if (!status)
+			status = logs_make(lattice, order, fitted, error);
+		for (int k = 0; !status && k < 3; k++) {
+			fitted->base[order[k]] = origin.base[k];
+			spectrum_forward(spectrum, fitted->coefficient[k], fitted->base[order[k]]);
+		}
+		memcpy(rotation, origin.grid.axis, sizeof origin.grid.axis);
+	}
+	default_origin_free(&origin);
 	return status;
 }
 
@@ -244,26 +242,29 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
                                 const float *filled, struct default_model *fitted, bp_error *error)
 {
 	const float base[3] = {fitted->base[order[0]], fitted->base[order[1]], fitted->base[order[2]]};
+	float rotation[3][3];
 	bp_status status;
 
 	memcpy(fitted->coefficient[0], filled, 3 * lattice_cells(lattice->dims) * sizeof *filled);
 	stage_enter(STAGE_CLEAN);
 	status = default_project(spectrum, lattice->dims, lattice->valid, base, options->budget_bytes, PROJECTIONS[options->effort - 1],
 	                         fitted->coefficient, error);
-	return status ? status : fields_make(lattice->dims, spectrum, order, true, fitted, error);
+	if (status)
+		return status;
+	spectra_make(lattice->dims, spectrum, order, fitted, rotation);
+	return fields_make(lattice->dims, order, (const float(*)[3])rotation, true, fitted, error);
 }
 
 bp_status default_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error)
 {
-	const struct kernels *kernels = kernels_get();
 	const struct lattice_dims d = lattice->dims;
 	const size_t cells = lattice_cells(d);
 	/* An error bound is a promise about the measured values, their noise included. */
 	const bool denoise = !(options->max_error > 0), project = denoise && PROJECTIONS[options->effort - 1] > 0;
 	struct default_model *fitted = model->log_density = calloc(1, sizeof *fitted);
 	struct spectrum *spectrum = NULL;
-	struct sample sample = {0};
-	float *filled = NULL;
+	struct default_sample sample = {0};
+	float *filled = NULL, rotation[3][3];
 	int order[3]; /* coefficient[k] is channel order[k], until it becomes field k */
 	bp_status status;
 
@@ -277,22 +278,18 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
 	stage_enter(STAGE_REGRESSION);
-	status = sample_draw(lattice, &sample, error);
+	status = default_sample_draw(lattice, &sample, error);
 	if (!status)
-		status = colour_fit(&sample, model, error);
+		status = default_sample_colour(&sample, model->colour, error);
 	stage_enter(STAGE_CLEAN);
 	if (!status) {
-		channels_order(&sample, order);
-		fitted->unit = unit_for(&sample, largest_value(lattice));
+		default_sample_order(&sample, order);
+		fitted->unit = default_sample_unit(&sample, lattice);
 		status = spectrum_create(d, &spectrum, error);
 	}
-	free(sample.x);
-	for (int k = 0; !status && k < 3; k++) {
-		const double sum = kernels->default_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit, fitted->coefficient[k]);
-		fitted->base[order[k]] = (float)(sum / (double)lattice->valid_count);
-	}
+	default_sample_free(&sample);
 	if (!status)
-		status = default_fill(d, lattice->valid, fitted->coefficient, error);
+		status = logs_make(lattice, order, fitted, error);
 	if (!status && project) {
 		filled = malloc(3 * cells * sizeof *filled);
 		if (filled)
@@ -301,8 +298,12 @@ bp_status default_fit(const struct lattice *lattice, const struct fit_options *o
 			status = error_memory(error, 3 * cells * sizeof *filled);
 	}
 	if (!status)
-		status = fields_make(d, spectrum, order, denoise, fitted, error);
-	if (!status && project && !fitted->noisy && lattice->valid_count < cells)
+		spectra_make(d, spectrum, order, fitted, rotation);
+	if (!status && denoise)
+		status = origin_restore(lattice, spectrum, order, rotation, fitted, error);
+	if (!status)
+		status = fields_make(d, order, (const float(*)[3])rotation, denoise, fitted, error);
+	if (!status && project && !fitted->levels && !fitted->noisy && lattice->valid_count < cells)
 		status = fields_improve(lattice, options, spectrum, order, filled, fitted, error);
 	free(filled);
 	spectrum_free(spectrum);

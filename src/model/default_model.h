@@ -14,7 +14,9 @@
  * the table's values that scales as they do, so a table s times as bright gives the same fields and s times the unit.
  *
  * A model that was fitted holds coefficients as they were found; one that was decoded holds levels, a coefficient
- * being about level * step. What lies below the quantiser's step is lost in encoding, where the budget is known.
+ * being about level * step. What lies below the quantiser's step is lost in encoding, where the budget is known. A model that was
+ * fitted to a decoded table (default_origin.h) holds both: levels in any order, step, centre, planes, in end[0] how far they reach, and
+ * in `missed` by how much they miss the table.
  */
 #ifndef MODEL_DEFAULT_MODEL_H
 #define MODEL_DEFAULT_MODEL_H
@@ -26,6 +28,7 @@
 #define DEFAULT_UNIT_MOST 0x1p999
 #define DEFAULT_CODES_UNIT 0x1p39 /* of default_codes of kernels.h: what its 1 is, in units */
 enum { DEFAULT_PLANES_MAX = 24 }; /* |level| < 2^24 */
+#define DEFAULT_CENTRE_BELOW 0.4f /* where a level lies whose lower planes are missing, as a share of them */
 
 /* A level that is not 0. */
 struct default_level {
@@ -50,6 +53,7 @@ struct default_model {
 	uint32_t end[LAYERS_MAX];
 	struct default_level *levels; /* ordered by field and harmonic */
 	uint32_t level_count;
+	double missed;         /* fitted: the sum of the squares over the fields' cells, from that over those that are known */
 };
 
 bp_status default_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error);
@@ -62,6 +66,9 @@ void default_free(struct default_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
 uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
+
+/* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
+float default_level_value(const struct default_model *model, int32_t level, uint32_t lowest);
 
 /* default_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. */
 bp_status default_denoise(struct lattice_dims dims, float *coefficient, bool *noisy, bp_error *error);

@@ -10,8 +10,7 @@ uint32_t default_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end,
 	return end > first ? planes - 1 - (end - 1 - first) / period : planes;
 }
 
-/* The coefficient that a level stands for when planes below `lowest` are not there. */
-static inline float level_value(const struct default_model *model, int32_t level, uint32_t lowest)
+float default_level_value(const struct default_model *model, int32_t level, uint32_t lowest)
 {
 	const uint32_t magnitude = (uint32_t)(level < 0 ? -level : level) >> lowest << lowest;
 	float value;
@@ -29,19 +28,19 @@ static inline float level_value(const struct default_model *model, int32_t level
 static void terms_of_levels(const struct default_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
                             struct default_terms *out)
 {
-	const uint32_t p = inverse->dims.phi_d, even = (p + 1) / 2, cells = (uint32_t)lattice_cells(inverse->dims);
+	const uint32_t p = inverse->dims.phi_d, cells = (uint32_t)lattice_cells(inverse->dims);
 	uint32_t n = 0, unit = 0, lowest = 0; /* units below this one have their start */
 
 	for (uint32_t i = 0; i < model->level_count; i++) {
 		const struct default_level level = model->levels[i];
 		const uint32_t field = level.at < cells ? 0 : level.at < 2 * cells ? 1 : 2, at = level.at - field * cells;
-		const uint32_t row = at / p, lane = at - row * p, harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
+		const uint32_t row = at / p, harmonic = spectrum_harmonic(p, at - row * p);
 		if (unit <= field * p + harmonic) {
 			while (unit <= field * p + harmonic)
 				out->start[unit++] = n;
 			lowest = default_lowest_plane(model->planes, p, model->end[layers - 1], field, harmonic);
 		}
-		const float value = level_value(model, level.level, lowest);
+		const float value = default_level_value(model, level.level, lowest);
 		if (value != 0)
 			out->term[n++] = spectrum_term_make(inverse, row, value);
 	}

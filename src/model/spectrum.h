@@ -44,6 +44,12 @@ static inline uint32_t spectrum_lane(uint32_t phi_d, uint32_t harmonic)
 	return harmonic / 2 + (harmonic % 2 ? (phi_d + 1) / 2 : 0);
 }
 
+static inline uint32_t spectrum_harmonic(uint32_t phi_d, uint32_t lane)
+{
+	const uint32_t even = (phi_d + 1) / 2;
+	return lane < even ? 2 * lane : 2 * (lane - even) + 1;
+}
+
 /* Of table - base, in place. The inverse: spectrum_inverse.h. */
 void spectrum_forward(struct spectrum *spectrum, float *table, float base);
 
