@@ -152,11 +152,12 @@ static bp_status unit_mend(const struct lattice *lattice, struct spectrum *spect
                            struct unit_search *search, struct default_model *fitted, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims);
-	float *block = memory_alloc(3 * cells * sizeof *block), *const slope[3] = {block, block + cells, block + 2 * cells};
 	const struct grid_evidence evidence = {lattice->dims, fitted->coefficient, origin->exact};
+	float *block = memory_alloc(3 * cells * sizeof *block);
 
 	if (!block)
 		return error_memory(error, 3 * cells * sizeof *block);
+	float *const slope[3] = {block, block + cells, block + 2 * cells};
 	for (int k = 0; k < 3; k++) {
 		const double *b = lattice->rgb[order[k]];
 		for (size_t i = 0; i < cells; i++) /* of log2(1 + b / unit) by log2(unit) */

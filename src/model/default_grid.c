@@ -144,7 +144,7 @@ static bool step_find(const struct grid_evidence *e, const double axis[3], doubl
 	g->centre[0] = (float)(first / step - 1);
 	g->centre[1] = (float)(second / step - 2);
 	g->centre[2] = DEFAULT_CENTRE_BELOW;
-	return fabsf(g->centre[0]) <= 0.5f && fabsf(g->centre[1]) <= 0.5f;
+	return g->step > 0 && fabsf(g->centre[0]) <= 0.5f && fabsf(g->centre[1]) <= 0.5f;
 }
 
 /* ---- harmonic 0, and the end of the lowest plane ---- */
@@ -207,10 +207,11 @@ static uint32_t end_of(const double *gain, uint32_t units, double *largest)
 static bp_status end_find(const struct grid_evidence *e, double axis[3][3], struct default_grid *g, bp_error *error)
 {
 	const size_t p = e->dims.phi_d;
-	double *gain = malloc(6 * p * sizeof *gain), *swapped = gain + 3 * p, explained[2];
+	double *gain = malloc(6 * p * sizeof *gain), explained[2];
 
 	if (!gain)
 		return error_memory(error, 6 * p * sizeof *gain);
+	double *swapped = gain + 3 * p;
 	for (size_t f = 0; f < 3; f++) {
 		coarse_gains(e, axis[f], g, gain + f * p);
 		memcpy(swapped + (f ? 3 - f : 0) * p, gain + f * p, p * sizeof *gain);
@@ -241,6 +242,8 @@ bp_status default_grid_find(const struct grid_evidence *e, float length, const f
 	if (!step_find(e, axis[0], first, g))
 		return BP_OK;
 	grid_refine(e, axis, g);
+	if (!(g->step > 0 && g->step <= 0x1p40f && fabsf(g->centre[1]) <= 0.5f))
+		return BP_OK;
 	bp_status status = end_find(e, axis, g, error);
 	for (int f = 0; !status && f < 3; f++) {
 		g->offset[f] = (float)offset_find(e, (uint32_t)f, axis[f], g);
