@@ -65,7 +65,6 @@ static const struct {
 	enum property property;
 	double limit;
 } EXCEPTIONS[] = {
-	{PROFILE_PAPER, "checkerboard", SCALE, 2e-3}, /* coefficients of equal size: rounding decides which are kept */
 	{PROFILE_PAPER, "denormal", SCALE, 20},       /* half of the cells dark: two lines fit equally well, and rounding chooses */
 	/* Ranges beyond single precision: the coefficients' rounding errors are what is lost. */
 	{PROFILE_DEFAULT, "bright-cell", GENERATION, 10},

@@ -90,7 +90,10 @@ static void plane_fill(struct field_codec *codec, const double *value, const uin
 		codec->plane[i] = codec->defined[i] ? codec->wanted[i] : (double)codec->smooth[i];
 }
 
-/* The magnitude from which on at most `keep` coefficients are kept; *ties of those equal to it. */
+/* Magnitudes this near to each other are equal: which of them is the larger is for rounding to say, and a table multiplied would be another. */
+static const double EQUAL = 1e-7;
+
+/* The magnitude of the last of the `keep` largest coefficients; *ties of those equal to it are among them. */
 static double threshold_of(struct field_codec *codec, uint32_t keep, size_t *ties)
 {
 	size_t above = 0;
@@ -99,7 +102,7 @@ static double threshold_of(struct field_codec *codec, uint32_t keep, size_t *tie
 		codec->scratch[i] = fabs(codec->plane[i]);
 	double threshold = select_kth(codec->scratch, codec->cells, codec->cells - keep);
 	for (size_t i = codec->cells - keep; i < codec->cells; i++)
-		above += codec->scratch[i] > threshold;
+		above += codec->scratch[i] > threshold * (1 + EQUAL);
 	*ties = keep - above;
 	return threshold;
 }
@@ -112,9 +115,9 @@ static void plane_thin(struct field_codec *codec, uint32_t keep)
 
 	for (size_t i = 0; i < codec->cells; i++) {
 		double magnitude = fabs(codec->plane[i]);
-		if (magnitude > threshold)
+		if (magnitude > threshold * (1 + EQUAL))
 			continue;
-		if (magnitude == threshold && ties)
+		if (magnitude >= threshold * (1 - EQUAL) && ties)
 			ties--;
 		else
 			codec->plane[i] = 0;
