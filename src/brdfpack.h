@@ -199,7 +199,8 @@ typedef enum bp_form {
 	BP_FORM_EXPANDED = 0, /* 16 bits per value, relative error at most 2^-11 of the decoded value; 8.8 MB / 2.9 MB */
 	BP_FORM_COMPACT = 1,  /* 8 bits per value, shared scales and colours: some 0.001 in log RMSE more, 0.01 where channels end at 0; 2.6 MB / 2.0 MB */
 	BP_FORM_PREVIEW = 2   /* expanded, but only every second corner along each axis, and quicker to load: for a look, with the
-	                         first layer; 1.1 MB / 0.4 MB. Where an extent of the lattice is odd, all corners are loaded */
+	                         first layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an extent of the
+	                         lattice is odd, all corners are loaded */
 } bp_form;
 
 typedef enum bp_colour {
@@ -230,7 +231,8 @@ typedef struct bp_loaded {
 
 /*
  * Loads material `index` of the archive; options NULL: as if zeroed. The caller frees *out. Several threads
- * may load from one archive at once. Beside the result it needs at most 12 bytes per cell while it works.
+ * may load from one archive at once. Beside the result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a
+ * MERL lattice; more only for records of megabytes.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an unknown form or colour, sampling neither 0 nor 1, max_log_rmse negative
  * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
  */

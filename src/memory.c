@@ -18,11 +18,26 @@ void memory_prefer_huge(void *block, size_t bytes)
 #endif
 }
 
+static void *alloc_aligned(size_t bytes)
+{
+	void *block = NULL;
+	if (posix_memalign(&block, bytes < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE, bytes) != 0)
+		return NULL;
+	memory_prefer_huge(block, bytes);
+	return block;
+}
+
+static size_t huge_pages_round_up(size_t bytes)
+{
+	return (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+}
+
 void *memory_alloc(size_t bytes)
 {
-	const size_t alignment = bytes < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE;
-	void *block = aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-	if (block)
-		memory_prefer_huge(block, (bytes + alignment - 1) / alignment * alignment);
-	return block;
+	return alloc_aligned(bytes < HUGE_PAGE / 2 ? bytes : huge_pages_round_up(bytes));
+}
+
+void *memory_alloc_kept(size_t bytes)
+{
+	return bytes < HUGE_PAGE ? memory_alloc(bytes) : alloc_aligned(bytes);
 }

@@ -15,4 +15,10 @@ void memory_prefer_huge(void *block, size_t bytes);
 /* malloc for tables: aligned to a cache line, or, from half a huge page on, to huge pages, which are asked for. For free(). */
 void *memory_alloc(size_t bytes);
 
+/*
+ * The same for a table that is kept as long as its material: beyond the first, huge pages only where it fills them. One that is
+ * filled in part lies in memory as a whole: 4 MB for the compact form's 2.6, 10 for the expanded form's 8.8.
+ */
+void *memory_alloc_kept(size_t bytes);
+
 #endif

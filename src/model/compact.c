@@ -110,7 +110,7 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	const size_t line = padded + CELLS_MAX; /* a row, and what a block's last vectors read past it */
 	size_t scratch_bytes = (4 * line + 2 * rows * kept) * sizeof(float);
 	float *scratch = malloc(scratch_bytes);
-	t->store = memory_alloc(t->store_bytes);
+	t->store = memory_alloc_kept(t->store_bytes);
 	if (!scratch || !t->store) {
 		free(scratch);
 		return error_memory(error, scratch ? t->store_bytes : scratch_bytes);

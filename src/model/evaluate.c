@@ -38,7 +38,7 @@ static bp_status expanded_alloc(struct table *t, bp_error *error)
 	t->row = (t->dims.phi_d + 1) * (uint32_t)t->channels;
 	t->slice = t->row * t->dims.theta_d;
 	t->store_bytes = (size_t)t->row * t->dims.theta_h * t->dims.theta_d * sizeof(uint16_t) + TABLE_SLACK_BYTES;
-	t->store = memory_alloc(t->store_bytes);
+	t->store = memory_alloc_kept(t->store_bytes);
 	if (!t->store)
 		return error_memory(error, t->store_bytes);
 	memset(t->store + t->store_bytes - TABLE_SLACK_BYTES, 0, TABLE_SLACK_BYTES);

@@ -1,0 +1,54 @@
+/* A block that is kept lies in memory with its own bytes only, whatever pages it is made of. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "memory.h"
+
+static size_t resident_bytes(void)
+{
+	unsigned long all = 0, resident = 0;
+	FILE *file = fopen("/proc/self/statm", "r");
+	assert_non_null(file);
+	assert_int_equal(fscanf(file, "%lu %lu", &all, &resident), 2);
+	fclose(file);
+	return resident * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+/* As loaded materials lie: the compact form, one that ends just in a third page, the expanded form. */
+static void a_kept_block_takes_its_own_bytes_and_no_huge_page_more(void **user)
+{
+	enum { COUNT = 16 };
+	const size_t bytes[] = {2590000, 4200000, 8790000};
+	(void)user;
+	for (int n = 0; n < 3; n++) {
+		void *block[COUNT];
+		size_t before = resident_bytes();
+		for (int m = 0; m < COUNT; m++) {
+			block[m] = memory_alloc_kept(bytes[n]);
+			assert_non_null(block[m]);
+			assert_int_equal((uintptr_t)block[m] % 64, 0);
+			memset(block[m], 1, bytes[n]);
+		}
+		size_t after = resident_bytes();
+		if (after > before + COUNT * (bytes[n] + bytes[n] / 12))
+			fail_msg("%d blocks of %zu bytes take %zu", COUNT, bytes[n], after - before);
+		for (int m = 0; m < COUNT; m++)
+			free(block[m]);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_kept_block_takes_its_own_bytes_and_no_huge_page_more),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
