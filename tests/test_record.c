@@ -136,6 +136,7 @@ static void dropping_layers_keeps_the_other_sections_byte_for_byte(void **state)
 		assert_memory_equal(kept + head.sections[i].offset, record + full.sections[i].offset, 10);
 	assert_true(head.layers[1].fidelity.log_rmse == full.layers[1].fidelity.log_rmse);
 	assert_memory_equal(head.source.sha256, full.source.sha256, SHA256_BYTES);
+	assert_true(full.codec_version != RECORD_LAYERS_DROPPED && head.codec_version == RECORD_LAYERS_DROPPED);
 	assert_int_equal(record_keep_layers(record, bytes, 0, &same, &same_bytes, NULL), BP_OK);
 	assert_int_equal(same_bytes, bytes);
 	assert_memory_equal(same, record, bytes);

@@ -21,6 +21,9 @@ enum { RECORD_BUDGET_MIN = 1000, RECORD_BUDGET_MAX = 4000000 };
 #define RECORD_MAGIC "\x8b" "REC\r\n\x1a\n"
 enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 1 };
 
+/* In place of a codec version: no encoder made this record as it is, so no rebuild takes it for what it would make. */
+enum { RECORD_LAYERS_DROPPED = 0 };
+
 /* Types of section; 1..15 belong to the paper's profile, 16..31 to the default one. */
 enum section_type {
 	SECTION_MARGINALS = 1, /* scale and the three marginals */
@@ -62,7 +65,7 @@ struct record_section {
 struct record_head {
 	char name[RECORD_NAME_BYTES_MAX + 1];
 	enum profile profile;
-	uint32_t codec_version;
+	uint32_t codec_version; /* of the encoder, or RECORD_LAYERS_DROPPED */
 	uint32_t head_bytes, record_bytes;
 	struct lattice_dims dims;
 	double horizon_limit;
@@ -110,7 +113,8 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
                         struct model **out, bp_error *error);
 
 /*
- * Copies a record with layers 0..layers-1 only (0: all), its sections byte for byte: *out is malloc'ed.
+ * Copies a record with layers 0..layers-1 only (0: all), its sections byte for byte: *out is malloc'ed. Where layers are
+ * dropped its head says so in place of the codec version.
  * `count` must be the record's bytes; head and section checksums are checked.
  */
 bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layers, uint8_t **out, size_t *out_bytes,

@@ -232,6 +232,8 @@ bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layer
 		                    entry->error);
 		write_bytes(bytes, record + entry->offset, entry->bytes);
 	}
+	if (layers < head.layer_count)
+		head.codec_version = RECORD_LAYERS_DROPPED;
 	head.layer_count = layers;
 	status = record_write(&head, &kept, out, out_bytes, error);
 out:

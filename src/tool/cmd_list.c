@@ -63,8 +63,11 @@ static void material_print(const struct record_head *head)
 	char sha256[SHA256_HEX_CHARACTERS + 1];
 	sha256_to_hex(head->source.sha256, sha256);
 	printf("%s\n", head->name);
-	printf("  record      %" PRIu32 " bytes, profile %s, codec version %" PRIu32 ", ", head->record_bytes,
-	       profile_name(head->profile), head->codec_version);
+	printf("  record      %" PRIu32 " bytes, profile %s, ", head->record_bytes, profile_name(head->profile));
+	if (head->codec_version == RECORD_LAYERS_DROPPED)
+		printf("layers dropped, ");
+	else
+		printf("codec version %" PRIu32 ", ", head->codec_version);
 	if (head->options.max_error > 0)
 		printf("made for log RMSE <= %g", head->options.max_error);
 	else

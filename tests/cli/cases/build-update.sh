@@ -14,6 +14,10 @@ rm in/beta.binary
 build --update --json -j 2 -o out.bpk in | reused
 build --update --json --effort 4 -o out.bpk in | reused
 build --json -o out.bpk in | reused
+build -q --profile paper -o fresh.bpk in
+brdfpack subset -q --max-error 1 -o out.bpk fresh.bpk
+build --update --profile paper --json -o out.bpk in | reused
+cmp fresh.bpk out.bpk && echo "records that lost layers are not reused"
 echo "not an archive" >other.bpk
 code build --update -o other.bpk in
 cat other.bpk
