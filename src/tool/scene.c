@@ -29,31 +29,146 @@ static bp_status word_add(struct scene_words *words, const char *text, size_t by
 	return BP_OK;
 }
 
+/* A word as it stands in the file: of every byte of a name an escape makes at most these. */
+enum { ESCAPE_BYTES_MAX = 6, WORD_BYTES_MAX = BP_NAME_BYTES_MAX * ESCAPE_BYTES_MAX };
+
+/* What a word means, and a bit more than fits a name. */
+struct meaning {
+	char text[WORD_BYTES_MAX];
+	size_t bytes;
+};
+
+static void character_put(struct meaning *to, uint32_t code)
+{
+	const uint8_t lead[] = {0, 0xC0, 0xE0, 0xF0};
+	const uint32_t more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+	to->text[to->bytes++] = (char)(lead[more] | code >> (6 * more));
+	for (uint32_t n = more; n-- > 0;)
+		to->text[to->bytes++] = (char)(0x80 | (code >> (6 * n) & 0x3F));
+}
+
+/* The number at the beginning of the text; how many digits it has, 0 where there is none or where it is no character. */
+static size_t number_take(const char *text, size_t bytes, uint32_t base, size_t digits_max, uint32_t *number)
+{
+	size_t n = 0;
+	*number = 0;
+	for (; n < bytes && n < digits_max; n++) {
+		const uint32_t c = (uint8_t)text[n], letter = c | 0x20;
+		const uint32_t digit = c >= '0' && c <= '9' ? c - '0' : letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : base;
+		if (digit >= base)
+			break;
+		*number = *number * base + digit;
+	}
+	return *number > 0 && *number <= 0x10FFFF ? n : 0;
+}
+
+/* JSON's \" \\ \/ \uXXXX, and \' which others have; false for those of control characters, which stand in no name. */
+static bool backslashes_read(const char *text, size_t bytes, struct meaning *to)
+{
+	to->bytes = 0;
+	for (size_t at = 0; at < bytes; at++) {
+		uint32_t code, low;
+		if (text[at] != '\\') {
+			to->text[to->bytes++] = text[at];
+		} else if (++at < bytes && text[at] == 'u') {
+			if (number_take(text + at + 1, bytes - at - 1, 16, 4, &code) != 4)
+				return false;
+			at += 4;
+			/* beyond U+FFFF two halves, each written so */
+			if (code >= 0xD800 && code < 0xDC00 && bytes - at > 6 && text[at + 1] == '\\' && text[at + 2] == 'u' &&
+			    number_take(text + at + 3, bytes - at - 3, 16, 4, &low) == 4 && low >= 0xDC00 && low < 0xE000) {
+				code = 0x10000 + ((code - 0xD800) << 10) + (low - 0xDC00);
+				at += 6;
+			}
+			character_put(to, code);
+		} else if (at < bytes && strchr("\"\\/'", text[at])) {
+			to->text[to->bytes++] = text[at];
+		} else {
+			return false;
+		}
+	}
+	return true;
+}
+
+/* XML's references to characters; what is none stays as it is. */
+static void references_read(const char *text, size_t bytes, struct meaning *to)
+{
+	static const struct { const char *name; char means; } NAMED[] = {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
+	enum { NAMED_COUNT = sizeof NAMED / sizeof *NAMED };
+	to->bytes = 0;
+	for (size_t at = 0; at < bytes;) {
+		const size_t left = bytes - at;
+		size_t n = 0, digits;
+		uint32_t code;
+		while (n < NAMED_COUNT && (left < strlen(NAMED[n].name) || memcmp(text + at, NAMED[n].name, strlen(NAMED[n].name)) != 0))
+			n++;
+		if (n < NAMED_COUNT) {
+			to->text[to->bytes++] = NAMED[n].means;
+			at += strlen(NAMED[n].name);
+		} else if (left > 3 && !memcmp(text + at, "&#", 2)) {
+			const size_t start = text[at + 2] == 'x' ? 3 : 2;
+			digits = number_take(text + at + start, left - start, start == 3 ? 16 : 10, 7, &code);
+			if (digits > 0 && start + digits < left && text[at + start + digits] == ';') {
+				character_put(to, code);
+				at += start + digits + 1;
+			} else {
+				to->text[to->bytes++] = text[at++];
+			}
+		} else {
+			to->text[to->bytes++] = text[at++];
+		}
+	}
+}
+
 /*
  * The text since the last quote of one kind; too long to be a name, or past a line's end, it is none. A quote may open
- * a word, close one, or be an apostrophe: so each ends one and begins another.
+ * a word, close one, or be an apostrophe: so each ends one and begins another. One behind a backslash may be part of
+ * the word, or the backslash may be: so both are tried, the first by the second pair of open words.
  */
 struct open_word {
-	char text[BP_NAME_BYTES_MAX + 1];
+	char text[WORD_BYTES_MAX];
 	size_t bytes;
 	bool possible;
+	bool backslash; /* the last byte is one that stands for no other */
 };
+
+static bp_status name_add(struct scene_words *words, const char *text, size_t bytes, bp_error *error)
+{
+	return name_fault(text, bytes) ? BP_OK : word_add(words, text, bytes, error);
+}
+
+/* Adds the word, and what it means if it has escapes. */
+static bp_status word_close(struct scene_words *words, const struct open_word *word, bool escapes, bp_error *error)
+{
+	struct meaning meaning;
+	if (escapes)
+		return memchr(word->text, '\\', word->bytes) && backslashes_read(word->text, word->bytes, &meaning)
+			? name_add(words, meaning.text, meaning.bytes, error) : BP_OK;
+	bp_status status = name_add(words, word->text, word->bytes, error);
+	if (!status && memchr(word->text, '&', word->bytes)) {
+		references_read(word->text, word->bytes, &meaning);
+		status = name_add(words, meaning.text, meaning.bytes, error);
+	}
+	return status;
+}
 
 static bp_status quotes_scan(struct scene_words *words, FILE *file, bp_error *error)
 {
-	struct open_word open[2] = {{.possible = false}, {.possible = false}};
+	struct open_word open[4] = {{.possible = false}}; /* of " and of ', then the same with escapes */
 	bp_status status = BP_OK;
 	int c;
 
 	while (!status && (c = getc_unlocked(file)) != EOF)
-		for (int kind = 0; kind < 2 && !status; kind++) {
+		for (int kind = 0; kind < 4 && !status; kind++) {
 			struct open_word *word = &open[kind];
-			if (c == (kind ? '\'' : '"')) {
-				if (word->possible && !name_fault(word->text, word->bytes))
-					status = word_add(words, word->text, word->bytes, error);
+			const bool escapes = kind >= 2, escaped = escapes && word->backslash;
+			word->backslash = c == '\\' && !escaped;
+			if (c == (kind % 2 ? '\'' : '"') && !escaped) {
+				if (word->possible)
+					status = word_close(words, word, escapes, error);
 				word->bytes = 0;
 				word->possible = true;
-			} else if (word->bytes == BP_NAME_BYTES_MAX || c == '\n' || c == 0) {
+			} else if (word->bytes == WORD_BYTES_MAX || c == '\n' || c == 0) {
 				word->possible = false;
 			} else {
 				word->text[word->bytes++] = (char)c;

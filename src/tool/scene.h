@@ -2,7 +2,8 @@
  * scene.h: which materials a scene file speaks of.
  *
  * pbrt, Mitsuba XML, USD ASCII and JSON all write names between quotes. Any text between two quotes of one kind
- * (" or '), on one line, is a word; what the words mean is not looked at.
+ * (" or '), on one line, is a word; what the words mean is not looked at. A word counts as it stands, and as it reads
+ * with JSON's backslashes or XML's &references; undone.
  */
 #ifndef TOOL_SCENE_H
 #define TOOL_SCENE_H
