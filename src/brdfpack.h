@@ -50,7 +50,7 @@ typedef enum bp_status {
 typedef struct bp_error {
 	bp_status status;
 	uint64_t offset;   /* byte in the file where it was seen, or BP_NO_OFFSET */
-	char message[512]; /* one line, no newline, NUL-terminated */
+	char message[512]; /* one line, control characters as \xHH, NUL-terminated */
 } bp_error;
 
 /* A short text for a status: static, never NULL. */
@@ -165,7 +165,7 @@ typedef int bp_problem_fn(void *user, const bp_problem *problem);
 /*
  * Reads the whole file and checks all checksums, the index, the order of the names, and that there is no
  * gap, overlap or trailing byte. Goes on after damage as far as the index reaches, and reports each problem.
- * BP_OK when there is none; otherwise the status of the first, which is also in *error.
+ * BP_OK when there is none; otherwise the status of the first, which is also in *error. BP_ERROR_ARGUMENT for unknown flags.
  */
 bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error);
 
@@ -271,7 +271,7 @@ float bp_material_sample(const bp_material *material, const float wo[3], const f
 float bp_material_pdf(const bp_material *material, const float wi[3], const float wo[3]);
 
 /*
- * The directional albedo: the integral of f cos theta_i over wi, for theta_o in radians in [0, pi/2]. Other angles, NaN, and
+ * The directional albedo: the integral of f cos theta_i over wi, for theta_o in radians in [0, pi/2). Other angles, NaN, and
  * a material that was loaded without sampling give 0. Measurements can exceed 1. Some milliseconds (a quadrature)
  * when an angle is asked for first, some ten nanoseconds when it or those around it were; the value is the same.
  */

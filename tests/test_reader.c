@@ -221,6 +221,31 @@ static void eight_threads_read_through_one_handle(void **state)
 	bp_archive_close(archive);
 }
 
+static void a_message_is_one_line_of_whole_characters_whatever_was_asked_for(void **state)
+{
+	const char *const names[] = {"alum"};
+	char name[700] = "two\nlines\t\x1b[1m";
+	bp_archive *archive = NULL;
+	bp_error error;
+	uint64_t index = 7;
+	(void)state;
+	fixture_archive(fixture_path("asked.bpk"), names, 1, 10);
+	assert_int_equal(bp_archive_open(fixture_path("asked.bpk"), &archive, NULL), BP_OK);
+	assert_int_equal(bp_archive_find(archive, name, &index, &error), BP_ERROR_NOT_FOUND);
+	assert_string_equal(error.message, "there is no material \"two\\x0alines\\x09\\x1b[1m\"");
+	for (int shift = 0; shift < 3; shift++) { /* characters of three bytes, cut at each of them */
+		memset(name, 'x', 2);
+		for (size_t n = (size_t)shift; n < 600; n += 3)
+			memcpy(name + n, "\xe2\x82\xac", 4);
+		assert_int_equal(bp_archive_find(archive, name, &index, &error), BP_ERROR_NOT_FOUND);
+		const size_t bytes = strlen(error.message);
+		assert_true(bytes < sizeof error.message && bytes > sizeof error.message - 8);
+		assert_memory_equal(error.message + bytes - 3, "\xe2\x82\xac", 4);
+	}
+	assert_int_equal(index, 7);
+	bp_archive_close(archive);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -229,6 +254,7 @@ int main(void)
 		cmocka_unit_test(what_is_not_an_archive_is_called_so),
 		cmocka_unit_test(newer_versions_and_hostile_headers_are_told_apart),
 		cmocka_unit_test(a_file_cut_while_open_gives_an_error),
+		cmocka_unit_test(a_message_is_one_line_of_whole_characters_whatever_was_asked_for),
 		cmocka_unit_test(eight_threads_read_through_one_handle),
 		cmocka_unit_test(verify_names_each_damaged_material),
 	};
