@@ -53,6 +53,45 @@ static void the_density_integrates_to_1_down_to_grazing(void **user)
 	}
 }
 
+/* The integral over wi itself, in steps that crowd at the horizon opposite wo: of the half-angle nothing is assumed. */
+static double integrate_directly(const struct sampler *s, const float wo[3])
+{
+	enum { STEPS = 700 };
+	const double opposite = atan2((double)wo[1], (double)wo[0]) + M_PI;
+	double sum = 0;
+	for (int a = 0; a < STEPS; a++)
+		for (int b = 0; b < STEPS; b++) {
+			const double v = (a + 0.5) / STEPS, w = 2 * (b + 0.5) / STEPS - 1, z = v * v * v, phi = opposite + M_PI * w * w * w, r = sqrt(1 - z * z);
+			const float wi[3] = {(float)(r * cos(phi)), (float)(r * sin(phi)), (float)z};
+			sum += (double)sampler_pdf(s, wi, wo) * 3 * v * v / STEPS * 3 * w * w * M_PI * 2 / STEPS;
+		}
+	return sum;
+}
+
+/* Closer to the horizon than the rounding of wi and wo lets half-angles be told apart. */
+static void at_the_horizon_the_density_still_integrates_to_1_and_samples_follow_it(void **user)
+{
+	(void)user;
+	const enum kind kinds[] = {SATIN, GLOSSY, MIRROR};
+	const double degrees[] = {89.97, 89.99, 89.999, 89.99999};
+	for (int kind = 0; kind < 3; kind++) {
+		struct material m = make(kinds[kind], SMALL);
+		for (int n = 0; n < 4; n++) {
+			double p = chi_square_probability(m.sampler, m.sampler, degrees[n]);
+			if (p < 0.01 / 12) /* 1 %, Bonferroni */
+				fail_msg("kind %d at %g degrees: p = %g", (int)kinds[kind], degrees[n], p);
+			for (int turn = 0; turn < 4 && kinds[kind] != MIRROR; turn++) { /* whose highlight is narrower than the steps */
+				const double theta = degrees[n] * M_PI / 180, phi = 0.9 * turn + 0.2;
+				const float wo[3] = {(float)(sin(theta) * cos(phi)), (float)(sin(theta) * sin(phi)), (float)cos(theta)};
+				double total = integrate_directly(m.sampler, wo);
+				if (fabs(total - 1) >= 1e-3)
+					fail_msg("kind %d at %g degrees: %.6f", (int)kinds[kind], degrees[n], total);
+			}
+		}
+		release(&m);
+	}
+}
+
 static void samples_follow_the_density_by_chi_square(void **user)
 {
 	(void)user;
@@ -266,6 +305,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_density_integrates_to_1_down_to_grazing),
+		cmocka_unit_test(at_the_horizon_the_density_still_integrates_to_1_and_samples_follow_it),
 		cmocka_unit_test(samples_follow_the_density_by_chi_square),
 		cmocka_unit_test(a_wrong_density_fails_the_chi_square_test),
 		cmocka_unit_test(the_mean_weight_is_the_albedo_and_its_spread_is_small),

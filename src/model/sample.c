@@ -24,6 +24,12 @@ static inline float squared_length(const float w[3])
 	return w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
 }
 
+/*
+ * The least cosine that is told apart, of 89.977 degrees: nearer to grazing the half-angle of wi and wo hangs on the rounding of
+ * their components, and what is drawn for 89.977 degrees serves as well.
+ */
+#define GRAZING 4e-4f
+
 static inline bool outgoing_set(const float wo[3], struct outgoing *o)
 {
 	float squared = squared_length(wo);
@@ -32,8 +38,7 @@ static inline bool outgoing_set(const float wo[3], struct outgoing *o)
 	float n = direction_normaliser(squared);
 	o->x = wo[0] * n;
 	o->y = wo[1] * n;
-	/* nearer to grazing, squares of the cosine would leave a float's range */
-	o->z = wo[2] * n > 1e-6f ? wo[2] * n : 1e-6f;
+	o->z = wo[2] * n > GRAZING ? wo[2] * n : GRAZING;
 	const float sine2 = o->x * o->x + o->y * o->y;
 	o->sine = sqrtf(sine2);
 	bool pole = !(o->sine > 0);

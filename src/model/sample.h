@@ -11,7 +11,8 @@
  * wi.z = 2 (wo.h) h.z - wo.z). For the wo at hand, the conditional distribution of s given phi is cut there and
  * divided by what remains of it, so no sample is lost below the horizon, and the density integrates to 1
  * whatever wo. Between two nodes the density is their mixture, each cut at the actual horizon. A share of
- * cosine-distributed samples is mixed in, so the density is nowhere 0 above the horizon.
+ * cosine-distributed samples is mixed in, so the density is nowhere 0 above the horizon. Past 89.977 degrees wo counts
+ * as being there: 4e-4 from the horizon, rounding moves the half-angle by as much as its range.
  */
 #ifndef MODEL_SAMPLE_H
 #define MODEL_SAMPLE_H
