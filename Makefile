@@ -217,7 +217,7 @@ $(BUILD)/bench/brdfpack-bench-eval: $(BUILD)/src/bench/eval_main.o $(BUILD)/benc
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARY_LIBS)
 BENCH_EVAL_FLAGS ?=
-bench-eval: bench-data $(BUILD)/bench/brdfpack-bench-eval
+bench-eval: bench-ready bench-data $(BUILD)/bench/brdfpack-bench-eval
 	$(Q)[ $(BENCH_OUT)/eval.bpk -nt $(BUILD)/brdfpack ] || { mkdir -p $(BENCH_OUT) && $(BUILD)/brdfpack build -q -o $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo); }
 	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BUILD)/bench/brdfpack-bench-eval $(BENCH_EVAL_FLAGS) $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo)
 
