@@ -25,6 +25,7 @@ TOOL, SHIM = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 LONG = "--long" in sys.argv
 KILLS = os.path.abspath(sys.argv[sys.argv.index("--kills") + 1]) if "--kills" in sys.argv else None
 random.seed(1)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it, and so would every build
 failures = []
 
 spec = importlib.util.spec_from_file_location("fixtures", HERE + "/cli/fixtures.py")

@@ -272,5 +272,5 @@ double default_grid_missed(const struct grid_evidence *e, const struct default_g
 			near += size >= 0.2f && fabsf(size - place) < 0.02f;
 		}
 	}
-	return near >= NEAR_LEAST && near >= count / 4 ? squares * 12 / (double)count : INFINITY;
+	return near >= NEAR_LEAST && near >= count / 8 ? squares * 12 / (double)count : INFINITY;
 }
