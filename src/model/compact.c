@@ -76,7 +76,9 @@ static void places_fill(struct table *t)
 static void shares_fill(struct table *t, uint32_t blocks, const float *const knots[2], const float low[2], const float high[2])
 {
 	const size_t rows = (size_t)t->dims.theta_h * t->dims.theta_d;
-	const float per[2] = {high[0] > low[0] ? 4095 / (high[0] - low[0]) : 0, high[1] > low[1] ? 4095 / (high[1] - low[1]) : 0};
+	/* Below this a range is nothing, and its reciprocal might be infinite. */
+	const float least = 0x1p-100f;
+	const float per[2] = {high[0] - low[0] > least ? 4095 / (high[0] - low[0]) : 0, high[1] - low[1] > least ? 4095 / (high[1] - low[1]) : 0};
 	const float *knot[2] = {knots[0], knots[1]};
 
 	for (size_t r = 0; r < rows; r++) {
