@@ -106,7 +106,7 @@ job_cli() { build test CFLAGS="-O3 -g -Werror" && cli_tests test; }
 # no -Werror: what the sanitizers insert makes gcc warn of things that are not there
 job_asan() {
 	export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1
-	build asan CFLAGS="-O1 -g" SANITIZE=address,undefined && unit_tests asan && cli_tests asan
+	build asan CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow && unit_tests asan && cli_tests asan
 }
 job_clang() { build clang CC=clang CFLAGS="-O2 -g -Werror"; }
 job_install() { build test CFLAGS="-O3 -g -Werror" && check "installed library" "$logs/install.log" tests/install.sh build/test; }
