@@ -2,7 +2,7 @@
  * default_grid.h: the grid on which the coefficients of a decoded table lie.
  *
  * Along each of three axes a coefficient is 0 or (level + centre) step; in the units of the lowest plane that were not there, it is
- * (level + centre) 2 step. See default_terms.h for the way there, FORMAT.md for the numbers.
+ * (level + centre) 2 step (FORMAT.md, "From levels to values").
  */
 #ifndef MODEL_DEFAULT_GRID_H
 #define MODEL_DEFAULT_GRID_H
