@@ -68,8 +68,8 @@ static inline void KERNEL(compact_residuals)(const struct compact_view *v, f32x8
 	const uint32_t at = v->residual;
 #ifdef __AVX2__
 	__m128i near = _mm_cvtsi32_si128((int)KERNEL(load32)(v->a + at)), far = _mm_cvtsi32_si128((int)KERNEL(load32)(v->c + at));
-	near = _mm_insert_epi16(near, (int)KERNEL(load16)(v->b + at), 1);
-	far = _mm_insert_epi16(far, (int)KERNEL(load16)(v->d + at), 1);
+	near = _mm_insert_epi16(near, (int16_t)KERNEL(load16)(v->b + at), 1);
+	far = _mm_insert_epi16(far, (int16_t)KERNEL(load16)(v->d + at), 1);
 	*out = (f32x8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_unpacklo_epi32(near, far)));
 #else
 	const u32x4 pairs = {KERNEL(load16)(v->a + at), KERNEL(load16)(v->b + at), KERNEL(load16)(v->c + at), KERNEL(load16)(v->d + at)};
