@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Coverage-guided fuzzing: tests/fuzz.sh BUILD SECONDS. BUILD holds fuzz_* (libFuzzer) and an ordinary brdfpack.
-# The seed corpus is made here: the test vectors, their records, small MERL files, the manifests, command lines.
+# The seed corpus is made here: the test vectors, their records, small MERL files, some with such a record in them, the manifests, command lines.
 set -euo pipefail
 build=$1 seconds=$2
 here=$(cd "$(dirname "$0")" && pwd)
@@ -8,7 +8,7 @@ corpus=$build/corpus
 rm -rf "$corpus" && mkdir -p "$corpus"/{archive,record,merl,manifest,options}
 cp "$here"/../format-spec/vectors/*.bpk "$corpus/archive"
 python3 - "$corpus" <<'END'
-import glob, os, struct, sys
+import glob, math, os, struct, sys
 corpus = sys.argv[1]
 magic = b"\x8bREC\r\n\x1a\n"
 for path in glob.glob(corpus + "/archive/*.bpk"):
@@ -17,6 +17,14 @@ for path in glob.glob(corpus + "/archive/*.bpk"):
     while at >= 0 and at + 16 <= len(data):
         length = struct.unpack_from("<I", data, at + 12)[0]
         open("%s/record/%s-%d" % (corpus, os.path.basename(path), n), "wb").write(data[at:at + min(length, 1 << 16)])
+        record = data[at:at + length]
+        cells = math.prod(struct.unpack_from("<3H", record, 24)) if len(record) > 30 else 0
+        carried = b"\x8bCAR\r\n\x1a\n" + struct.pack("<I", length) + record
+        if n == 0 and 6 * 2 * cells > len(carried) and 24 * cells < 16000: # a file that carries this record, cells of 1 around it
+            words = [carried[i:i + 6].ljust(6, b"\0") + b"\xf0\xbf" for i in range(0, len(carried), 6)]
+            words += [struct.pack("<d", 1)] * (3 * cells - len(words))
+            body = struct.pack("<3i", *struct.unpack_from("<3H", record, 24)) + b"".join(words)
+            open("%s/merl/carried-%s" % (corpus, os.path.basename(path)), "wb").write(body)
         at, n = data.find(magic, at + 1), n + 1
 for h, d, p in (4, 4, 4), (5, 4, 6):
     cells = h * d * p

@@ -1,8 +1,9 @@
-/* The MERL reader on arbitrary bytes, with any extents. */
+/* The MERL reader on arbitrary bytes, with any extents, and what is done with a record that the file carries. */
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "codec/record_carried.h"
 #include "merl/merl_file.h"
 
 struct input {
@@ -34,6 +35,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 		for (int c = 0; c < 3; c++)
 			if (lattice.valid[i] && !(lattice.rgb[c][i] >= 0 && lattice.rgb[c][i] <= DBL_MAX))
 				abort();
+	for (int p = PROFILE_PAPER; p <= PROFILE_DEFAULT; p++) {
+		const struct fit_options options = {(enum profile)p, 60400, 0, 5};
+		const struct record_source source = {0};
+		uint8_t *record;
+		size_t bytes;
+		if (record_carried(&lattice, "m", &source, &options, &record, &bytes, NULL) == BP_OK)
+			free(record);
+	}
 	lattice_free(&lattice);
 	return 0;
 }

@@ -206,6 +206,21 @@ bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_he
 	return BP_OK;
 }
 
+bp_status record_sections(const uint8_t *record, const struct record_head *head, uint32_t layers, struct section_list *out, bp_error *error)
+{
+	for (uint32_t i = 0; i < head->section_count; i++) {
+		const struct record_section *entry = &head->sections[i];
+		struct byte_buffer *bytes;
+		if (bytes_crc32(record + entry->offset, entry->bytes) != entry->crc32)
+			return error_set(error, BP_ERROR_CHECKSUM, entry->offset, "the checksum of section %u differs", i);
+		if (entry->layer >= layers)
+			continue;
+		bytes = section_add(out, (enum section_type)entry->type, entry->codec, entry->version, entry->layer, entry->flags, entry->error);
+		write_bytes(bytes, record + entry->offset, entry->bytes);
+	}
+	return BP_OK;
+}
+
 bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layers, uint8_t **out, size_t *out_bytes,
                              bp_error *error)
 {
@@ -219,24 +234,12 @@ bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layer
 		                 count);
 	if (layers == 0 || layers > head.layer_count)
 		layers = head.layer_count;
-	for (uint32_t i = 0; i < head.section_count; i++) {
-		const struct record_section *entry = &head.sections[i];
-		struct byte_buffer *bytes;
-		if (bytes_crc32(record + entry->offset, entry->bytes) != entry->crc32) {
-			status = error_set(error, BP_ERROR_CHECKSUM, entry->offset, "the checksum of section %u differs", i);
-			goto out;
-		}
-		if (entry->layer >= layers)
-			continue;
-		bytes = section_add(&kept, (enum section_type)entry->type, entry->codec, entry->version, entry->layer, entry->flags,
-		                    entry->error);
-		write_bytes(bytes, record + entry->offset, entry->bytes);
-	}
+	status = record_sections(record, &head, layers, &kept, error);
 	if (layers < head.layer_count)
 		head.codec_version = RECORD_LAYERS_DROPPED;
 	head.layer_count = layers;
-	status = record_write(&head, &kept, out, out_bytes, error);
-out:
+	if (!status)
+		status = record_write(&head, &kept, out, out_bytes, error);
 	section_list_free(&kept);
 	return status;
 }

@@ -75,6 +75,7 @@ void lattice_free(struct lattice *lattice)
 	if (!lattice)
 		return;
 	free(lattice->block);
+	free(lattice->carried);
 	memset(lattice, 0, sizeof *lattice);
 }
 

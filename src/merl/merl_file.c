@@ -11,6 +11,7 @@
 
 #include "../error.h"
 #include "../output_file.h"
+#include "carried.h"
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "MERL files are little-endian; a big-endian machine needs a swap here");
 
@@ -75,8 +76,8 @@ static bp_status header_read(struct input *in, bool any_dims, struct lattice_dim
 	                 any_dims ? " (or other legal extents)" : "", extent[0], extent[1], extent[2]);
 }
 
-/* After the header: the planes, to the end of the stream. */
-static bp_status planes_read(struct input *in, struct lattice *lattice, bp_error *error)
+/* After the header: the planes, to the end of the stream, and what is carried in them. */
+static bp_status planes_read(struct input *in, struct lattice *lattice, struct carried_reader *carried, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims);
 	const uint64_t expected = merl_file_bytes(lattice->dims);
@@ -91,6 +92,7 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, bp_error
 				return status;
 			if (got < count * sizeof *values)
 				return truncated(expected, in->done, error);
+			carried_find(carried, values, count);
 			lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start);
 		}
 	char extra;
@@ -108,6 +110,7 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, bp_error
 /* `available`: the bytes that are there, where that is known; a size that cannot be right is told before 35 MB are read in vain. */
 static bp_status input_read(struct input *in, bool any_dims, uint64_t available, struct lattice *out, bp_error *error)
 {
+	struct carried_reader carried = {0};
 	struct lattice lattice = {0};
 	struct lattice_dims dims;
 	bp_status status = header_read(in, any_dims, &dims, error);
@@ -122,12 +125,19 @@ static bp_status input_read(struct input *in, bool any_dims, uint64_t available,
 	status = lattice_alloc(dims, &lattice, error);
 	if (status != BP_OK)
 		return status;
-	status = planes_read(in, &lattice, error);
-	if (status == BP_OK)
-		*out = lattice;
-	else
+	status = planes_read(in, &lattice, &carried, error);
+	if (status != BP_OK || !carried.whole) {
+		free(carried.bytes);
+		carried.bytes = NULL;
+	}
+	if (status != BP_OK) {
 		lattice_free(&lattice);
-	return status;
+		return status;
+	}
+	lattice.carried = carried.bytes;
+	lattice.carried_bytes = carried.bytes ? carried.count : 0;
+	*out = lattice;
+	return BP_OK;
 }
 
 bp_status lattice_read(merl_read_fn *read, void *user, merl_seen_fn *seen, void *seen_user, bool any_dims,
@@ -175,10 +185,10 @@ out:
 	return status;
 }
 
-/* Fills values[count], in the file's units, from cell `start` of a channel. */
-typedef void chunk_fill_fn(const void *user, int channel, size_t start, size_t count, double *values);
+/* Fills values[count], in the file's units, from cell `start` of a channel; called in file order. */
+typedef void chunk_fill_fn(void *user, int channel, size_t start, size_t count, double *values);
 
-static bp_status planes_write(const char *path, struct lattice_dims dims, chunk_fill_fn *fill, const void *user, bp_error *error)
+static bp_status planes_write(const char *path, struct lattice_dims dims, chunk_fill_fn *fill, void *user, bp_error *error)
 {
 	const size_t cells = lattice_cells(dims);
 	const int32_t header[3] = {(int32_t)dims.theta_h, (int32_t)dims.theta_d, (int32_t)dims.phi_d};
@@ -209,11 +219,12 @@ out:
 struct decoded {
 	const struct expansion *table;
 	const uint8_t *below;
+	struct carried_writer carried;
 };
 
-static void decoded_fill(const void *user, int channel, size_t start, size_t count, double *values)
+static void decoded_fill(void *user, int channel, size_t start, size_t count, double *values)
 {
-	const struct decoded *decoded = user;
+	struct decoded *decoded = user;
 	const float *source = decoded->table->rgb[channel] + start;
 	const uint8_t *below = decoded->below + start;
 	const double unit = decoded->table->unit, scale = MERL_SCALE[channel];
@@ -223,16 +234,47 @@ static void decoded_fill(const void *user, int channel, size_t start, size_t cou
 	}
 	for (size_t n = 0; n < count; n++)
 		if (below[n])
-			values[n] = -1;
+			values[n] = carried_next(&decoded->carried);
 }
 
-bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error)
+static size_t marked(const uint8_t *mask, size_t cells)
 {
-	const struct decoded decoded = {table, below};
+	size_t count = 0;
+	for (size_t n = 0; n < cells; n++)
+		count += mask[n];
+	return count;
+}
+
+bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, const uint8_t *carried,
+                             size_t carried_bytes, bp_error *error)
+{
+	struct decoded decoded = {.table = table, .below = below};
+	if (carried && carried_fits(carried_bytes, 3 * marked(below, lattice_cells(table->dims))))
+		decoded.carried = (struct carried_writer){.bytes = carried, .count = carried_bytes};
 	return planes_write(path, table->dims, decoded_fill, &decoded, error);
 }
 
-static void measured_fill(const void *user, int channel, size_t start, size_t count, double *values)
+bool lattice_is_written(const struct lattice *lattice, const struct expansion *table, const uint8_t *below)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	struct decoded decoded = {.table = table, .below = below};
+	double values[256];
+	uint8_t state[256];
+
+	for (int c = 0; c < 3; c++)
+		for (size_t start = 0; start < cells; start += 256) {
+			const size_t count = cells - start < 256 ? cells - start : 256;
+			decoded_fill(&decoded, c, start, count, values);
+			memset(state, 0, sizeof state);
+			lattice_scan(values, count, MERL_SCALE[c], state);
+			for (size_t n = 0; n < count; n++)
+				if (lattice->valid[start + n] != (state[n] == 0) || (lattice->valid[start + n] && lattice->rgb[c][start + n] != values[n]))
+					return false;
+		}
+	return true;
+}
+
+static void measured_fill(void *user, int channel, size_t start, size_t count, double *values)
 {
 	const struct lattice *lattice = user;
 	for (size_t n = 0; n < count; n++) {
@@ -244,5 +286,5 @@ static void measured_fill(const void *user, int channel, size_t start, size_t co
 
 bp_status lattice_save_path(const char *path, const struct lattice *lattice, bp_error *error)
 {
-	return planes_write(path, lattice->dims, measured_fill, lattice, error);
+	return planes_write(path, lattice->dims, measured_fill, (void *)(uintptr_t)lattice, error);
 }

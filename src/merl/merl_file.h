@@ -18,7 +18,8 @@ typedef void merl_seen_fn(void *user, const void *bytes, size_t count);
 /*
  * Reads one MERL file from a stream to its end. Refuses (BP_ERROR_BAD_INPUT, with expected and found):
  * a header other than `90 90 180` (any legal extents when any_dims), a short stream, trailing bytes,
- * no valid cell at all. The error's offset is where the file ends or should. On success the caller owns *out.
+ * no valid cell at all. The error's offset is where the file ends or should. On success the caller owns *out,
+ * and what the file carries (carried.h) is in it, unchecked.
  */
 bp_status lattice_read(merl_read_fn *read, void *user, merl_seen_fn *seen, void *seen_user, bool any_dims,
                        struct lattice *out, bp_error *error);
@@ -30,11 +31,15 @@ bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_use
                             bp_error *error);
 
 /*
- * Writes a decoded table as a MERL file: -1 where below[cell], unit * value / MERL_SCALE elsewhere
- * (DBL_MAX where that would overflow). An older file is replaced whole or not at all (output_file.h);
- * errors name the path.
+ * Writes a decoded table as a MERL file: unit * value / MERL_SCALE (DBL_MAX where that would overflow), but -1 where
+ * below[cell]. These cells carry the `carried` bytes (carried.h; NULL: none) where they have the room, and are then
+ * from -1.0625 to -1. An older file is replaced whole or not at all (output_file.h); errors name the path.
  */
-bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, bp_error *error);
+bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, const uint8_t *carried,
+                             size_t carried_bytes, bp_error *error);
+
+/* Whether the lattice, of the table's extents, is what reading such a file gives: the same cells valid, the same values to the bit. */
+bool lattice_is_written(const struct lattice *lattice, const struct expansion *table, const uint8_t *below);
 
 /*
  * Writes a lattice as a MERL file: the planes / MERL_SCALE, but -1 in every channel of a cell that is

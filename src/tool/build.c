@@ -226,23 +226,25 @@ static bp_status previous_open(struct build *build, bp_error *error)
 	struct stat facts;
 	if (!build->options->update || (stat(build->options->output, &facts) != 0 && errno == ENOENT))
 		return BP_OK;
-	bp_status status = bp_archive_open(build->options->output, &build->previous, error);
-	if (status)
-		return status;
-	void *shared = mmap(NULL, sizeof *build->reused, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	return bp_archive_open(build->options->output, &build->previous, error);
+}
+
+static bp_status counts_open(struct build *build, bp_error *error)
+{
+	void *shared = mmap(NULL, sizeof *build->counts, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
 	if (shared == MAP_FAILED)
-		return error_memory(error, sizeof *build->reused);
-	build->reused = shared;
+		return error_memory(error, sizeof *build->counts);
+	build->counts = shared;
 	return BP_OK;
 }
 
-static void previous_close(struct build *build)
+static void counts_close(struct build *build)
 {
-	bp_archive_close(build->previous);
-	if (build->reused) {
-		build->totals.reused = __atomic_load_n(build->reused, __ATOMIC_RELAXED);
-		munmap(build->reused, sizeof *build->reused);
-	}
+	if (!build->counts)
+		return;
+	build->totals.reused = __atomic_load_n(&build->counts->reused, __ATOMIC_RELAXED);
+	build->totals.kept = __atomic_load_n(&build->counts->kept, __ATOMIC_RELAXED);
+	munmap(build->counts, sizeof *build->counts);
 }
 
 /* Everything up to the records in the spool. */
@@ -264,7 +266,7 @@ static void build_prepare_and_work(struct build *build)
 		missing_report(build);
 	if ((build->items.count == 0 && !streams) || (build->options->strict && !totals_whole(&build->totals)))
 		return;
-	if (output_refuse(options->output, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
+	if (output_refuse(options->output, &error) || previous_open(build, &error) || counts_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
 		build_stop(build, options->output, NULL, &error);
 		return;
 	}
@@ -311,7 +313,8 @@ int build_run(const struct build_options *options)
 
 	build_prepare_and_work(&build);
 	workers_stop(build.workers);
-	previous_close(&build);
+	bp_archive_close(build.previous);
+	counts_close(&build);
 	container_close(build.stream);
 	bool whole = totals_whole(&build.totals);
 	if (build_goes_on(&build) && build.totals.packed > 0 && (whole || !options->strict)) {

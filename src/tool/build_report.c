@@ -82,6 +82,7 @@ static void summary_json(const char *output, bool written, const struct build_to
 	json_bool(&json, "written", written);
 	json_integer(&json, "materials", totals->packed);
 	json_integer(&json, "reused", totals->reused);
+	json_integer(&json, "kept", totals->kept);
 	json_integer(&json, "refused", totals->refused);
 	json_integer(&json, "missing", totals->missing);
 	json_integer(&json, "damaged_inputs", totals->damaged);

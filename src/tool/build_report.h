@@ -26,6 +26,7 @@ struct build_totals {
 	uint64_t damaged;         /* containers or members that could not be read */
 	uint64_t skipped;         /* paths that are no files; only a warning */
 	uint64_t reused;          /* of the packed ones, taken unchanged from the older archive */
+	uint64_t kept;            /* of the packed ones, records that their files carried (record_carried.h) */
 	uint64_t source_bytes, archive_bytes;
 	double seconds;
 };

@@ -16,6 +16,12 @@
 #include "spool.h"
 #include "workers.h"
 
+/* What workers count, in memory that they share with the parent. */
+struct work_counts {
+	uint64_t reused; /* records taken from the older archive */
+	uint64_t kept;   /* records that their files carried */
+};
+
 struct build {
 	const struct build_options *options;
 	struct manifest manifest;
@@ -32,7 +38,7 @@ struct build {
 	struct build_totals totals;
 	uint64_t bytes_total, bytes_done; /* of the listed items, for the progress bar */
 	bp_archive *previous;    /* with --update, the archive that is there already; else NULL */
-	uint64_t *reused;        /* records taken from it: counted by the workers, in memory that they share; else NULL */
+	struct work_counts *counts; /* NULL before the workers are forked */
 	bool stopped;            /* after an error that ends the build; it has been reported */
 };
 

@@ -1,6 +1,7 @@
 #include "build_state.h"
 
 #include "../archive/merge.h"
+#include "../codec/record_carried.h"
 #include "../error.h"
 #include "../merl/sha256.h"
 #include "../stage.h"
@@ -56,6 +57,25 @@ static void checksum_add(void *user, const void *bytes, size_t count)
 	stage_enter(before);
 }
 
+/* The material's record: from the older archive, from the file itself, or, as nearly always, by fitting. */
+static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice, const struct record_source *source,
+                            uint8_t **record, size_t *record_bytes, bp_error *error)
+{
+	const struct fit_options *options = &build->options->fit;
+	bp_status status = BP_OK;
+	if (build->previous) {
+		status = archive_reuse(build->previous, name, source, options, record, record_bytes, error);
+		if (*record)
+			__atomic_fetch_add(&build->counts->reused, 1, __ATOMIC_RELAXED);
+	}
+	if (!status && !*record) {
+		status = record_carried(lattice, name, source, options, record, record_bytes, error);
+		if (*record)
+			__atomic_fetch_add(&build->counts->kept, 1, __ATOMIC_RELAXED);
+	}
+	return status || *record ? status : record_pack(lattice, name, source, options, record, record_bytes, NULL, error);
+}
+
 bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	static struct source_cursor cursor; /* this process's own: it keeps a zip open from member to member */
@@ -80,16 +100,7 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record
 	source.nonfinite_count = lattice.nonfinite_count;
 	sha256_finish(&sha, source.sha256);
 	stage_enter(STAGE_REST);
-	if (build->previous) {
-		status = archive_reuse(build->previous, job->name, &source, &build->options->fit, record, record_bytes, error);
-		if (status || *record) {
-			if (*record)
-				__atomic_fetch_add(build->reused, 1, __ATOMIC_RELAXED);
-			lattice_free(&lattice);
-			return status;
-		}
-	}
-	status = record_pack(&lattice, job->name, &source, &build->options->fit, record, record_bytes, NULL, error);
+	status = record_get(build, job->name, &lattice, &source, record, record_bytes, error);
 	lattice_free(&lattice);
 	return status;
 }

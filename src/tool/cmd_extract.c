@@ -50,18 +50,26 @@ static bp_status table_fit(struct table *table, const struct model *model, bp_er
 	return status;
 }
 
+/* What to write: a decoded table with its record, the table alone, or the parameters. */
+enum form { FORM_MERL, FORM_PLAIN, FORM_JSON };
+
 static bp_status merl_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
-                            const char *path, struct table *table, bp_error *error)
+                            const char *path, bool plain, struct table *table, bp_error *error)
 {
+	struct record_head same;
 	struct model *model = NULL;
+	uint8_t *record = NULL;
 	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
+	if (!status && !plain)
+		status = archive_entry_record(selection->archive, entry, &same, &record, error);
 	if (!status)
 		status = table_fit(table, model, error);
 	if (!status)
 		status = model_expand(model, 0, &table->expansion, error);
 	if (!status)
-		status = lattice_write_path(path, &table->expansion, table->below, error);
+		status = lattice_write_path(path, &table->expansion, table->below, record, record ? head->record_bytes : 0, error);
 	model_free(model);
+	free(record);
 	return status;
 }
 
@@ -98,7 +106,7 @@ static bp_status json_write(const struct record_head *head, const char *path, bp
 }
 
 /* One material into FOLDER/NAME.binary or .json. Names hold no '/', so it cannot land anywhere else. */
-static bool material_extract(struct selection *selection, uint64_t n, const char *folder, bool json, struct table *table)
+static bool material_extract(struct selection *selection, uint64_t n, const char *folder, enum form form, struct table *table)
 {
 	struct index_entry entry;
 	struct record_head head;
@@ -107,11 +115,11 @@ static bool material_extract(struct selection *selection, uint64_t n, const char
 	char *path;
 	if (!selection_head(selection, n, &entry, &head))
 		return false;
-	path = folder_path(folder, entry.name, json ? "json" : "binary");
+	path = folder_path(folder, entry.name, form == FORM_JSON ? "json" : "binary");
 	if (!path)
 		status = error_memory(&error, strlen(folder));
 	else
-		status = json ? json_write(&head, path, &error) : merl_write(selection, &entry, &head, path, table, &error);
+		status = form == FORM_JSON ? json_write(&head, path, &error) : merl_write(selection, &entry, &head, path, form == FORM_PLAIN, table, &error);
 	free(path);
 	if (status)
 		report_error(selection->path, entry.name, &error);
@@ -120,18 +128,21 @@ static bool material_extract(struct selection *selection, uint64_t n, const char
 
 static int extract_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_FORMAT = OPTION_LONG };
+	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN };
 	static const struct option names[] = {
-		{"directory", required_argument, NULL, 'C'}, {"format", required_argument, NULL, OPTION_FORMAT}, {0}};
+		{"directory", required_argument, NULL, 'C'}, {"format", required_argument, NULL, OPTION_FORMAT},
+		{"plain", no_argument, NULL, OPTION_PLAIN}, {0}};
 	const char *folder = ".";
 	struct selection selection;
 	struct table table = {0};
-	bool json = false, whole;
+	bool json = false, plain = false, whole;
 	int option;
 
 	while ((option = options_next(self, argc, argv, "C:", names)) >= 0) {
 		if (option == 'C')
 			folder = optarg;
+		else if (option == OPTION_PLAIN)
+			plain = true;
 		else if (!strcmp(optarg, "json") || !strcmp(optarg, "merl"))
 			json = optarg[0] == 'j';
 		else
@@ -139,6 +150,8 @@ static int extract_main(const struct command *self, int argc, char **argv)
 	}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
+	if (json && plain)
+		return report_usage(self, "--plain is about MERL files, --format json writes none");
 	int opened = selection_from(&selection, self, argv + optind, argc - optind);
 	if (opened != EXIT_OK)
 		return opened;
@@ -148,7 +161,7 @@ static int extract_main(const struct command *self, int argc, char **argv)
 		return EXIT_FAILED;
 	}
 	for (uint64_t i = 0; i < selection.count; i++)
-		whole &= material_extract(&selection, i, folder, json, &table);
+		whole &= material_extract(&selection, i, folder, json ? FORM_JSON : plain ? FORM_PLAIN : FORM_MERL, &table);
 	table_free(&table);
 	selection_close(&selection);
 	return whole ? EXIT_OK : EXIT_FAILED;
@@ -158,12 +171,14 @@ const struct command command_extract = {
 	.name = "extract",
 	.run = extract_main,
 	.description = "write materials as MERL files, or their parameters as JSON",
-	.usage = "Usage: brdfpack extract [-C DIR] [--format merl|json] ARCHIVE [NAME]...\n"
+	.usage = "Usage: brdfpack extract [-C DIR] [--format merl|json] [--plain] ARCHIVE [NAME]...\n"
 	         "Writes DIR/NAME.binary for the named materials, or for all. Cells wholly below the horizon\n"
-	         "are -1, all others hold the model's value.\n"
+	         "are negative, all others hold the model's value. The negative ones carry the material's\n"
+	         "record, so that building from these files loses nothing, unless a value was changed.\n"
 	         "\n"
 	         "  -C, --directory DIR  where to (default: here); created when it is missing\n"
 	         "      --format merl    MERL files (the default)\n"
 	         "      --format json    DIR/NAME.json with the parameters instead\n"
+	         "      --plain          no record: every cell below the horizon is -1\n"
 	         "  -h, --help           this text\n",
 };

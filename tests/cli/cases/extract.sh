@@ -11,5 +11,5 @@ source = open("alpha.binary", "rb").read()
 packed = open("new/folder/alpha.binary", "rb").read()
 print("header", source[:12] == packed[:12], len(source) == len(packed))
 read = lambda data: struct.unpack("<%dd" % ((len(data) - 12) // 8), data[12:])
-print("finite, and negative only as -1", all(p >= 0 or p == -1 for p in read(packed)))
+print("finite, and negative only from -1.0625 to -1", all(p >= 0 or -1.0625 < p <= -1 for p in read(packed)))
 END

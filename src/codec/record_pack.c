@@ -1,0 +1,184 @@
+#include "record.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../error.h"
+#include "../model/fast_math.h"
+#include "../stage.h"
+#include "name.h"
+#include "profile_codec.h"
+#include "record_measure.h"
+
+static void head_fill(struct record_head *head, const struct model *model, const char *name, const struct record_source *source,
+                      const struct fit_options *options, uint32_t codec_version)
+{
+	memset(head, 0, sizeof *head);
+	memcpy(head->name, name, strlen(name));
+	head->profile = model->profile;
+	head->codec_version = codec_version;
+	head->dims = model->dims;
+	head->horizon_limit = model->horizon_limit;
+	memcpy(head->colour, model->colour, sizeof head->colour);
+	head->options = *options;
+	head->source = *source;
+}
+
+/* What stays the same while records of several sizes are tried. */
+struct packing {
+	const struct lattice *lattice;
+	const struct profile_codec *codec;
+	const struct model *model;
+	struct encode_request request;
+	struct record_head head; /* the constant parts filled */
+};
+
+struct packed {
+	struct record_head head;
+	uint8_t *record; /* malloc'ed */
+	size_t bytes;
+};
+
+/* One record of at most record_bytes_max, its layers measured. */
+static bp_status record_build(const struct packing *packing, uint32_t record_bytes_max, struct packed *out, bp_error *error)
+{
+	struct packed packed = { .head = packing->head };
+	struct encode_request request = packing->request;
+	struct section_list sections = { 0 };
+	struct model *decoded = NULL;
+	bp_status status;
+
+	request.record_bytes_max = record_bytes_max;
+	stage_enter(STAGE_CODE);
+	status = packing->codec->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, &decoded,
+	                                error);
+	if (status)
+		goto out;
+	status = record_measure(&packed.head, &sections, packing->lattice, decoded, &packed.record, &packed.bytes, error);
+	if (!status && packed.bytes > record_bytes_max) {
+		free(packed.record);
+		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the record takes %zu bytes, the budget is %u", packed.bytes,
+		                   record_bytes_max);
+	}
+	if (!status)
+		*out = packed;
+out:
+	section_list_free(&sections);
+	model_free(decoded);
+	stage_enter(STAGE_REST);
+	return status;
+}
+
+static double last_error(const struct packed *packed)
+{
+	return packed->head.layers[packed->head.layer_count - 1].fidelity.log_rmse;
+}
+
+enum { SEARCH_START = 60400 }; /* bytes */
+
+/* What a search for a size knows: sizes that do not satisfy end at `low`, the smallest that does is `high`, 0 for none. */
+struct bracket {
+	uint32_t low, high;
+	double bytes[2], error[2]; /* the last two that were measured, the latest first; 0 for none */
+};
+
+/*
+ * Where to try next: errors fall about as bytes^-k, with k from the last two sizes, 0.85 before. A little more is asked than needed.
+ * Where that would not shrink the bracket, its middle.
+ */
+static uint32_t bracket_next(const struct bracket *b, double max_error)
+{
+	double k = 0.85;
+	const double low = b->low, high = b->high ? b->high : RECORD_BUDGET_MAX;
+
+	if (b->error[0] > 0 && b->error[1] > 0 && b->bytes[0] != b->bytes[1])
+		k = fmin(fmax(fast_log2(b->error[1] / b->error[0]) / fast_log2(b->bytes[0] / b->bytes[1]), 0.3), 3);
+	double next = b->error[0] > 0 ? 1.003 * b->bytes[0] * fast_exp2(fast_log2(b->error[0] / max_error) / k) : sqrt(low * high);
+	if (!b->high)
+		next = fmax(next, 1.1 * low);
+	else if (next <= low * 1.002 || next >= high * 0.998)
+		next = next <= low * 1.002 && low > high * 0.9 ? low * 1.005 : sqrt(low * high);
+	return (uint32_t)fmin(fmax(next, low + 1), b->high ? high - 1 : high);
+}
+
+/*
+ * The smallest record whose error is at most max_error, to 1 % of its size: the error does not fall with every byte, so a smaller
+ * record may exist that this does not find.
+ */
+static bp_status record_search(const struct packing *packing, double max_error, struct packed *best, bp_error *error)
+{
+	struct bracket bracket = { .low = RECORD_BUDGET_MIN - 1 };
+	uint32_t size = SEARCH_START;
+
+	best->record = NULL;
+	while (!bracket.high || (bracket.high > bracket.low && bracket.high - bracket.low > bracket.high / 100 + 1)) {
+		struct packed trial = { .record = NULL };
+		bp_status status = record_build(packing, size, &trial, error);
+		if (status && (status != BP_ERROR_LIMIT || size == RECORD_BUDGET_MAX)) {
+			free(best->record);
+			best->record = NULL;
+			return status;
+		}
+		const double reached = status ? INFINITY : last_error(&trial);
+		if (reached > max_error && size == RECORD_BUDGET_MAX) {
+			status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "an error of %g cannot be met: the least is %g, in %zu bytes",
+			                   max_error, reached, trial.bytes);
+			free(trial.record);
+			return status;
+		}
+		if (!status) {
+			bracket.bytes[1] = bracket.bytes[0];
+			bracket.error[1] = bracket.error[0];
+			bracket.bytes[0] = (double)trial.bytes;
+			bracket.error[0] = reached;
+		}
+		if (reached > max_error) {
+			free(trial.record);
+			bracket.low = size;
+		} else {
+			free(best->record);
+			*best = trial;
+			bracket.high = (uint32_t)trial.bytes;
+		}
+		size = bracket_next(&bracket, max_error);
+	}
+	return BP_OK;
+}
+
+bp_status record_pack(const struct lattice *lattice, const char *name, const struct record_source *source,
+                      const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
+                      bp_error *error)
+{
+	struct packing packing = { .lattice = lattice, .codec = profile_codec_find(options->profile) };
+	struct packed packed = { .record = NULL };
+	struct model *model = NULL;
+	size_t name_bytes = strlen(name);
+	const char *fault = name_fault(name, name_bytes);
+	bp_status status;
+
+	if (!packing.codec)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
+	if (fault)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);
+	status = model_fit(lattice, options, &model, error);
+	if (status)
+		return status;
+	packing.model = model;
+	packing.request = (struct encode_request){ .options = options, .name_bytes = name_bytes };
+	head_fill(&packing.head, model, name, source, options, packing.codec->version);
+	if (options->max_error > 0 && !packing.codec->meets_max_error)
+		status = record_search(&packing, options->max_error, &packed, error);
+	else
+		status = record_build(&packing, options->max_error > 0 ? RECORD_BUDGET_MAX : options->budget_bytes, &packed, error);
+	if (!status && head)
+		status = record_head_parse(packed.record, packed.bytes, head, error);
+	model_free(model);
+	if (status) {
+		free(packed.record);
+		return status;
+	}
+	*record = packed.record;
+	*record_bytes = packed.bytes;
+	return BP_OK;
+}

@@ -1,0 +1,252 @@
+/*
+ * A table that was decoded from a record comes with it, by way of a MERL file, and keeps it: packed, extracted, packed again, the
+ * values stay the same to the bit, in both profiles. Where that would not be true, nothing is kept.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "codec/record_carried.h"
+#include "merl/merl_file.h"
+#include "packed_fixture.h"
+
+static const struct lattice_dims DIMS = {20, 16, 24};
+static const struct fit_options USUAL[2] = {{PROFILE_PAPER, 9000, 0, 5}, {PROFILE_DEFAULT, 9000, 0, 5}};
+static const struct record_source FIRST = {.bytes = 1, .sha256 = {1}}, SECOND = {.bytes = 2, .sha256 = {2}, .nonfinite_count = 3};
+
+/* A record and the table that it decodes to. */
+struct packed {
+	uint8_t *record;
+	size_t bytes;
+	struct record_head head;
+	struct expansion table;
+	uint8_t *below;
+};
+
+static void decode(struct packed *packed)
+{
+	struct model *model;
+	assert_int_equal(record_head_parse(packed->record, packed->bytes, &packed->head, NULL), BP_OK);
+	assert_int_equal(record_decode(&packed->head, 0, record_bytes_fetch, packed->record, &model, NULL), BP_OK);
+	assert_int_equal(expansion_alloc(packed->head.dims, &packed->table, NULL), BP_OK);
+	assert_int_equal(model_expand(model, 0, &packed->table, NULL), BP_OK);
+	packed->below = malloc(lattice_cells(packed->head.dims));
+	assert_non_null(packed->below);
+	assert_int_equal(lattice_below_horizon(packed->head.dims, packed->head.horizon_limit, packed->below, NULL), BP_OK);
+	model_free(model);
+}
+
+static void packed_make(const struct fit_options *options, struct packed *packed)
+{
+	struct lattice lattice;
+	uint8_t below[20 * 16 * 24];
+	glossy_lattice_make(DIMS, 1, &lattice);
+	assert_int_equal(lattice_below_horizon(DIMS, LATTICE_MERL_HORIZON, below, NULL), BP_OK);
+	for (size_t n = 0; n < sizeof below; n++)
+		for (int c = 0; c < 3; c++)
+			lattice.rgb[c][n] = below[n] ? -1 : lattice.rgb[c][n] * (1 + 0.3 * sin((double)(n * (size_t)(c + 3)))); /* rough: the budget binds */
+	lattice_validate(&lattice);
+	assert_int_equal(record_pack(&lattice, "first", &FIRST, options, &packed->record, &packed->bytes, NULL, NULL), BP_OK);
+	decode(packed);
+	lattice_free(&lattice);
+}
+
+static void packed_free(struct packed *packed)
+{
+	free(packed->record);
+	free(packed->below);
+	expansion_free(&packed->table);
+}
+
+/* Through a file, which carries these bytes. */
+static void extracted(const struct packed *packed, const uint8_t *carried, size_t bytes, struct lattice *out)
+{
+	char path[] = "/tmp/brdfpack-carried-XXXXXX";
+	const int fd = mkstemp(path);
+	assert_true(fd >= 0);
+	close(fd);
+	assert_int_equal(lattice_write_path(path, &packed->table, packed->below, carried, bytes, NULL), BP_OK);
+	assert_int_equal(lattice_read_path(path, NULL, NULL, true, out, NULL), BP_OK);
+	unlink(path);
+}
+
+static bool kept(const struct lattice *lattice, const char *name, struct fit_options options)
+{
+	uint8_t *record = NULL;
+	size_t bytes;
+	assert_int_equal(record_carried(lattice, name, &SECOND, &options, &record, &bytes, NULL), BP_OK);
+	free(record);
+	return record != NULL;
+}
+
+static void values_stay_the_same_to_the_bit(void **state)
+{
+	(void)state;
+	for (int p = 0; p < 2; p++) {
+		struct packed first, again = {0};
+		struct lattice lattice;
+		packed_make(&USUAL[p], &first);
+		extracted(&first, first.record, first.bytes, &lattice);
+		assert_int_equal(lattice.carried_bytes, first.bytes);
+		assert_int_equal(record_carried(&lattice, "second", &SECOND, &USUAL[p], &again.record, &again.bytes, NULL), BP_OK);
+		assert_non_null(again.record);
+		decode(&again);
+		for (int c = 0; c < 3; c++)
+			assert_memory_equal(first.table.rgb[c], again.table.rgb[c], lattice_cells(DIMS) * sizeof(float));
+		assert_memory_equal(first.below, again.below, lattice_cells(DIMS));
+		/* It says what it was made of now, and its errors are against that. */
+		assert_string_equal(again.head.name, "second");
+		assert_memory_equal(&again.head.source, &SECOND, sizeof SECOND);
+		assert_int_equal(again.head.codec_version, first.head.codec_version);
+		assert_true(first.head.layers[first.head.layer_count - 1].fidelity.log_rmse > 1e-3);
+		assert_true(again.head.layers[again.head.layer_count - 1].fidelity.log_rmse < 1e-12);
+		assert_true(again.head.layers[0].fidelity.log_rmse > 1e-3);
+		lattice_free(&lattice);
+		packed_free(&first);
+		packed_free(&again);
+	}
+}
+
+static void a_changed_value_makes_it_a_measurement_again(void **state)
+{
+	(void)state;
+	struct packed first;
+	struct lattice lattice;
+	packed_make(&USUAL[1], &first);
+	for (int what = 0; what < 4; what++) {
+		extracted(&first, first.record, first.bytes, &lattice);
+		assert_true(kept(&lattice, "m", USUAL[1]));
+		const size_t cells = lattice_cells(DIMS);
+		size_t cell = what == 3 ? 0 : cells / 2;
+		while (lattice.valid[cell] != (what != 2))
+			cell = (cell + 1) % cells;
+		if (what < 2)
+			lattice.rgb[2 * what][cell] *= 1 + 0x1p-50;
+		lattice.valid[cell] ^= what >= 2; /* 2: one more is measured; 3: one less */
+		assert_false(kept(&lattice, "m", USUAL[1]));
+		lattice_free(&lattice);
+	}
+	packed_free(&first);
+}
+
+static void another_request_is_packed_anew(void **state)
+{
+	(void)state;
+	struct packed first, bounded;
+	struct lattice lattice;
+	struct fit_options options = USUAL[1];
+	packed_make(&options, &first);
+	extracted(&first, first.record, first.bytes, &lattice);
+	options.effort = 9; /* what is exact cannot be better */
+	assert_true(kept(&lattice, "m", options));
+	options.budget_bytes = 100000;
+	assert_true(kept(&lattice, "m", options));
+	options.budget_bytes = (uint32_t)first.bytes;
+	assert_true(kept(&lattice, "fives", options)); /* as long as its name is no longer */
+	assert_false(kept(&lattice, "longer", options));
+	options.budget_bytes = (uint32_t)first.bytes - 1;
+	assert_false(kept(&lattice, "fives", options));
+	assert_true(kept(&lattice, "four", options));
+	assert_false(kept(&lattice, "m", USUAL[0]));
+	options = (struct fit_options){PROFILE_DEFAULT, 100000, 0.01, 5};
+	assert_false(kept(&lattice, "m", options)); /* a smaller record might do */
+	assert_false(kept(&lattice, "no/name", USUAL[1])); /* record_pack says why */
+	lattice_free(&lattice);
+	packed_free(&first);
+
+	packed_make(&options, &bounded);
+	extracted(&bounded, bounded.record, bounded.bytes, &lattice);
+	assert_true(kept(&lattice, "m", options));
+	options.max_error = 0.02;
+	assert_false(kept(&lattice, "m", options));
+	lattice_free(&lattice);
+	packed_free(&bounded);
+}
+
+static void a_damaged_or_foreign_record_is_not_kept(void **state)
+{
+	(void)state;
+	struct packed first;
+	struct lattice lattice;
+	packed_make(&USUAL[1], &first);
+	uint8_t *bytes = malloc(first.bytes);
+	assert_non_null(bytes);
+	for (size_t at = 0; at < first.bytes; at += at < 300 ? 1 : 97) {
+		memcpy(bytes, first.record, first.bytes);
+		bytes[at] ^= 0x10;
+		extracted(&first, bytes, first.bytes, &lattice);
+		assert_false(kept(&lattice, "m", USUAL[1]));
+		lattice_free(&lattice);
+	}
+	extracted(&first, first.record, first.bytes - 1, &lattice);
+	assert_false(kept(&lattice, "m", USUAL[1]));
+	lattice_free(&lattice);
+	extracted(&first, NULL, 0, &lattice);
+	assert_null(lattice.carried);
+	assert_false(kept(&lattice, "m", USUAL[1]));
+	lattice_free(&lattice);
+	free(bytes);
+	packed_free(&first);
+}
+
+/* Four extents have two cells below the horizon: no record fits there. */
+static void without_room_nothing_is_carried(void **state)
+{
+	(void)state;
+	struct packed packed = {0};
+	struct lattice lattice;
+	glossy_lattice_make((struct lattice_dims){4, 4, 4}, 1, &lattice);
+	assert_int_equal(record_pack(&lattice, "m", &FIRST, &USUAL[1], &packed.record, &packed.bytes, NULL, NULL), BP_OK);
+	lattice_free(&lattice);
+	decode(&packed);
+	extracted(&packed, packed.record, packed.bytes, &lattice);
+	assert_null(lattice.carried);
+	for (size_t n = 0; n < 64; n++)
+		assert_int_equal(lattice.valid[n], !packed.below[n]);
+	lattice_free(&lattice);
+	packed_free(&packed);
+}
+
+/* A record that lost layers stays marked as such. */
+static void a_shortened_record_is_kept_as_it_is(void **state)
+{
+	(void)state;
+	struct packed first, shorter = {0};
+	struct lattice lattice;
+	struct record_head head;
+	uint8_t *record;
+	size_t bytes;
+	packed_make(&USUAL[1], &first);
+	assert_true(first.head.layer_count > 1);
+	assert_int_equal(record_keep_layers(first.record, first.bytes, 1, &shorter.record, &shorter.bytes, NULL), BP_OK);
+	decode(&shorter);
+	extracted(&shorter, shorter.record, shorter.bytes, &lattice);
+	assert_int_equal(record_carried(&lattice, "m", &SECOND, &USUAL[1], &record, &bytes, NULL), BP_OK);
+	assert_non_null(record);
+	assert_int_equal(record_head_parse(record, bytes, &head, NULL), BP_OK);
+	assert_int_equal(head.codec_version, RECORD_LAYERS_DROPPED);
+	free(record);
+	lattice_free(&lattice);
+	packed_free(&first);
+	packed_free(&shorter);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(values_stay_the_same_to_the_bit),
+		cmocka_unit_test(a_changed_value_makes_it_a_measurement_again),
+		cmocka_unit_test(another_request_is_packed_anew),
+		cmocka_unit_test(a_damaged_or_foreign_record_is_not_kept),
+		cmocka_unit_test(without_room_nothing_is_carried),
+		cmocka_unit_test(a_shortened_record_is_kept_as_it_is),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
