@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include "archive/writer.h"
+#include "codec/record_carried.h"
+#include "merl/merl_file.h"
 #include "stress_cases.h"
 
 static bp_status record_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
@@ -23,7 +25,11 @@ void packed_make(const struct lattice *lattice, const char *name, const struct f
 	struct model *model = NULL;
 
 	memset(out, 0, sizeof *out);
-	out->status = record_pack(lattice, name, &source, options, &out->record, &out->record_bytes, &out->head, NULL);
+	out->status = record_carried(lattice, name, &source, options, &out->record, &out->record_bytes, NULL);
+	if (!out->status && !out->record)
+		out->status = record_pack(lattice, name, &source, options, &out->record, &out->record_bytes, NULL, NULL);
+	if (!out->status)
+		out->status = record_head_parse(out->record, out->record_bytes, &out->head, NULL);
 	if (out->status)
 		return;
 	out->value = malloc(3 * cells * sizeof *out->value);
@@ -54,19 +60,35 @@ size_t packed_bad_values(const struct packed_table *packed)
 	return bad;
 }
 
-void packed_to_lattice(const struct packed_table *packed, bool whole, struct lattice *out)
+static void through_file(const struct packed_table *packed, bool plain, const uint8_t *below, struct lattice *out)
+{
+	char path[] = "/tmp/brdfpack-stress-XXXXXX";
+	const int fd = mkstemp(path);
+	if (fd < 0 || close(fd) != 0 ||
+	    lattice_write_path(path, &packed->table, below, plain ? NULL : packed->record, plain ? 0 : packed->record_bytes, NULL) != BP_OK ||
+	    lattice_read_path(path, NULL, NULL, true, out, NULL) != BP_OK || unlink(path) != 0) {
+		fprintf(stderr, "%s: cannot be extracted by way of %s\n", packed->head.name, path);
+		exit(1);
+	}
+}
+
+void packed_to_lattice(const struct packed_table *packed, enum decoded_form form, struct lattice *out)
 {
 	const size_t cells = lattice_cells(packed->head.dims);
-	uint8_t *below = malloc(cells);
+	uint8_t *below = calloc(cells, 1);
 
-	if (lattice_alloc(packed->head.dims, out, NULL) != BP_OK ||
-	    lattice_below_horizon(packed->head.dims, packed->head.horizon_limit, below, NULL) != BP_OK)
+	if (!below || (form != DECODED_WHOLE && lattice_below_horizon(packed->head.dims, packed->head.horizon_limit, below, NULL) != BP_OK))
 		exit(1);
-	for (size_t c = 0; c < 3; c++)
-		for (size_t i = 0; i < cells; i++)
-			out->rgb[c][i] = !whole && below[i] ? -1 : packed->value[c * cells + i];
+	if (form != DECODED_WHOLE) {
+		through_file(packed, form == DECODED_PLAIN, below, out);
+	} else {
+		if (lattice_alloc(packed->head.dims, out, NULL) != BP_OK)
+			exit(1);
+		for (size_t c = 0; c < 3; c++)
+			memcpy(out->rgb[c], packed->value + c * cells, cells * sizeof(double));
+		lattice_validate(out);
+	}
 	free(below);
-	lattice_validate(out);
 }
 
 /* ---- materials at work ---- */

@@ -16,14 +16,20 @@ struct packed_table {
 	double *value;           /* 3 * cells, in 1/sr */
 };
 
+/* As a build does: a record that the lattice carries is kept where it serves, else the lattice is fitted. */
 void packed_make(const struct lattice *lattice, const char *name, const struct fit_options *options, struct packed_table *out);
 void packed_free(struct packed_table *packed);
 
 /* Values that are negative, NaN or infinite. */
 size_t packed_bad_values(const struct packed_table *packed);
 
-/* The decoded table: the whole of it, or as it is extracted, cells below the horizon invalid. */
-void packed_to_lattice(const struct packed_table *packed, bool whole, struct lattice *out);
+/* What of a decoded table is packed again. */
+enum decoded_form {
+	DECODED_FILE,  /* as it is extracted, and read again: cells below the horizon invalid, and in them the record where it fits */
+	DECODED_PLAIN, /* the same without the record */
+	DECODED_WHOLE  /* the whole table, which no file holds */
+};
+void packed_to_lattice(const struct packed_table *packed, enum decoded_form form, struct lattice *out);
 
 /*
  * Writes the records (ascending names) as an archive, verifies it deeply, loads every material in both forms with
