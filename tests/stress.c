@@ -59,7 +59,7 @@ struct subject {
 };
 static const struct subject SUBJECTS[] = {
 	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-12, 1e-12, 1e-9}, {70, 80, 70, 80}},
-	{"default", PROFILE_DEFAULT, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 0, 2, 0.1, 1, 10, 30, 0.1, 1, 1e-12, 1e-12, 1e-9}, {120, 120, 120, 120}},
+	{"default", PROFILE_DEFAULT, {60400, 1000, 0}, {0, 0, 1e-9, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-12, 1e-12, 1e-9}, {120, 120, 120, 120}},
 };
 static const struct {
 	enum profile profile;

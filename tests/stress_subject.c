@@ -11,13 +11,6 @@
 #include "merl/merl_file.h"
 #include "stress_cases.h"
 
-static bp_status record_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (const uint8_t *)user + offset, count);
-	return BP_OK;
-}
-
 void packed_make(const struct lattice *lattice, const char *name, const struct fit_options *options, struct packed_table *out)
 {
 	static const struct record_source source = {.bytes = 1};
@@ -33,7 +26,7 @@ void packed_make(const struct lattice *lattice, const char *name, const struct f
 	if (out->status)
 		return;
 	out->value = malloc(3 * cells * sizeof *out->value);
-	if (record_decode(&out->head, 0, record_fetch, out->record, &model, NULL) != BP_OK ||
+	if (record_decode_whole(&out->head, 0, out->record, &model, NULL) != BP_OK ||
 	    expansion_alloc(lattice->dims, &out->table, NULL) != BP_OK || model_expand(model, 0, &out->table, NULL) != BP_OK) {
 		fprintf(stderr, "%s: a record that was just made does not decode\n", name);
 		exit(1);

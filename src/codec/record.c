@@ -93,3 +93,16 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 		*out = model;
 	return status;
 }
+
+static bp_status memory_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
+{
+	const uint8_t *record = user;
+	(void)error;
+	memcpy(bytes, record + offset, count);
+	return BP_OK;
+}
+
+bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out, bp_error *error)
+{
+	return record_decode(head, layers, memory_fetch, (void *)(uintptr_t)record, out, error);
+}

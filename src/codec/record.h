@@ -111,6 +111,8 @@ typedef bp_status record_fetch_fn(void *user, uint64_t offset, uint8_t *bytes, s
 /* Fetches and checks the sections of layers 0..layers-1 (0: all) and builds the model; the caller frees it with model_free. */
 bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user,
                         struct model **out, bp_error *error);
+/* The same from a record that is in memory, all head->record_bytes of it. */
+bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out, bp_error *error);
 
 /*
  * Copies a record with layers 0..layers-1 only (0: all), its sections byte for byte: *out is malloc'ed. Where layers are

@@ -3,19 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
 #include "../merl/merl_file.h"
 #include "../stage.h"
 #include "name.h"
 #include "profile_codec.h"
 #include "record_measure.h"
-
-static bp_status memory_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (const uint8_t *)user + offset, count);
-	return BP_OK;
-}
 
 /* What can be told from its head alone. */
 static bool head_serves(const struct record_head *head, const struct lattice *lattice, size_t name_bytes, const struct fit_options *options)
@@ -32,7 +24,7 @@ static struct model *model_behind(const struct lattice *lattice, const struct re
 	struct model *model = NULL;
 	struct expansion table = {0};
 	uint8_t *below = malloc(lattice_cells(lattice->dims));
-	const bool same = below && record_decode(head, 0, memory_fetch, lattice->carried, &model, NULL) == BP_OK &&
+	const bool same = below && record_decode_whole(head, 0, lattice->carried, &model, NULL) == BP_OK &&
 	                  expansion_alloc(lattice->dims, &table, NULL) == BP_OK && model_expand(model, 0, &table, NULL) == BP_OK &&
 	                  lattice_below_horizon(lattice->dims, head->horizon_limit, below, NULL) == BP_OK &&
 	                  lattice_is_written(lattice, &table, below);

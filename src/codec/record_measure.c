@@ -1,18 +1,9 @@
 #include "record_measure.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "../model/fidelity.h"
 #include "../stage.h"
-
-static bp_status memory_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	const uint8_t *record = user;
-	(void)error;
-	memcpy(bytes, record + offset, count);
-	return BP_OK;
-}
 
 /* Layers that are measured in one pass over the measured table: what the previews of a usual budget and the whole are. */
 enum { MEASURED_AT_ONCE = 3, MEASURED_CELLS_MAX = 1 << 22 };
@@ -24,7 +15,7 @@ static bp_status layer_expand(const struct record_head *head, const uint8_t *rec
 	struct model *model = NULL;
 	bp_status status = BP_OK;
 	if (!decoded)
-		status = record_decode(head, l + 1, memory_fetch, (void *)(uintptr_t)record, &model, error);
+		status = record_decode_whole(head, l + 1, record, &model, error);
 	if (!status)
 		status = model_expand(decoded ? decoded : model, l + 1, table, error);
 	model_free(model);
