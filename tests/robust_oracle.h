@@ -7,6 +7,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include <gsl/gsl_errno.h>
@@ -16,6 +17,7 @@
 
 struct oracle {
 	double intercept, slope;
+	double step[2]; /* of slow_fit: how far the last iteration moved intercept and slope */
 	size_t iterations;
 	int status;
 };
@@ -44,22 +46,48 @@ ORACLE struct oracle gsl_fit(const double *x, const double *y, size_t n)
 	return out;
 }
 
+/* -1 to 1 (splitmix64). */
+ORACLE long double oracle_draw(uint64_t *random)
+{
+	uint64_t z = *random += 0x9e3779b97f4a7c15u;
+	z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+	z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+	return (long double)((z ^ z >> 31) >> 11) * 0x1p-52L - 1;
+}
+
 ORACLE int ascending(const void *a, const void *b)
 {
 	long double x = *(const long double *)a, y = *(const long double *)b;
 	return (x > y) - (x < y);
 }
 
-/*
- * The steps of robust.h written down once more in long double, with a sort for the median. A constant x has the
- * leverage 1/n; the fitted value is then what counts, and it is returned as intercept with slope 0.
- */
-ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n)
+ORACLE long double middle(const double *value, size_t n, long double *scratch)
 {
+	for (size_t i = 0; i < n; i++)
+		scratch[i] = value[i];
+	qsort(scratch, n, sizeof *scratch, ascending);
+	return scratch[n / 2];
+}
+
+/*
+ * The steps of robust.h written down once more in long double, with a sort for the median. The observations are taken about
+ * the medians of x and y: these differences are exact where they are small, so that many nearly equal observations lose
+ * nothing by their distance from 0. A constant x has the leverage 1/n; the fitted value is then what counts, and it is
+ * returned as intercept with slope 0. Where only observations of one x keep weight, no line is determined: the slope is NaN.
+ *
+ * With `shake` != 0 every x and y is first moved by up to that part of itself, by numbers drawn from *random: how far the answer
+ * then moves tells the condition of the problem.
+ */
+ORACLE struct oracle slow_fit_shaken(const double *x_in, const double *y_in, size_t n, long double shake, uint64_t *random)
+{
+	long double *x = malloc(n * sizeof *x), *y = malloc(n * sizeof *y);
 	long double *f = malloc(n * sizeof *f), *w = malloc(n * sizeof *w), *v = malloc(n * sizeof *v);
 	long double mean_x = 0, mean_y = 0, sxx = 0, syy = 0, a = 0, b = 0;
+	const long double from_x = middle(x_in, n, v), from_y = middle(y_in, n, v);
 	struct oracle out = {0};
 	for (size_t i = 0; i < n; i++) {
+		x[i] = (x_in[i] - from_x) + (shake != 0 ? shake * x_in[i] * oracle_draw(random) : 0);
+		y[i] = (y_in[i] - from_y) + (shake != 0 ? shake * y_in[i] * oracle_draw(random) : 0);
 		mean_x += x[i] / (long double)n;
 		mean_y += y[i] / (long double)n;
 	}
@@ -68,7 +96,7 @@ ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n)
 		syy += (y[i] - mean_y) * (y[i] - mean_y);
 		w[i] = 1;
 	}
-	int constant = sxx <= 1e-30L * (long double)n * mean_x * mean_x;
+	int constant = sxx <= 1e-30L * (long double)n * (mean_x + from_x) * (mean_x + from_x);
 	for (size_t i = 0; i < n; i++) {
 		long double h = 1.0L / (long double)n + (constant ? 0 : (x[i] - mean_x) * (x[i] - mean_x) / sxx);
 		f[i] = 1 / sqrtl(1 - (h > 0.9999L ? 0.9999L : h));
@@ -77,39 +105,51 @@ ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n)
 	if (least == 0)
 		least = 1;
 	for (out.iterations = 0; out.iterations <= 100; out.iterations++) {
-		long double sw = 0, sx = 0, sy = 0, xx = 0, xy = 0, a0 = a, b0 = b;
+		long double sw = 0, sx = 0, sy = 0, xx = 0, xy = 0, a0 = a, b0 = b, low = INFINITY, high = -INFINITY;
 		for (size_t i = 0; i < n; i++) {
 			sw += w[i];
 			sx += w[i] * x[i];
 			sy += w[i] * y[i];
+			low = w[i] > 0 ? fminl(low, x_in[i]) : low;
+			high = w[i] > 0 ? fmaxl(high, x_in[i]) : high;
 		}
+		const long double mx = sx / sw, my = sy / sw;
 		for (size_t i = 0; i < n; i++) {
-			xx += w[i] * (x[i] - sx / sw) * (x[i] - sx / sw);
-			xy += w[i] * (x[i] - sx / sw) * (y[i] - sy / sw);
+			xx += w[i] * (x[i] - mx) * (x[i] - mx);
+			xy += w[i] * (x[i] - mx) * (y[i] - my);
 		}
-		b = constant ? 0 : xy / xx;
-		a = sy / sw - b * (sx / sw);
+		b = constant ? 0 : low < high ? xy / xx : NAN;
+		a = (my - b * mx) + (from_y - b * from_x);
+		out.step[0] = (double)(a - a0);
+		out.step[1] = (double)(b - b0);
 		long double tolerance = sqrtl((long double)DBL_EPSILON);
-		if (out.iterations && fabsl(a - a0) <= tolerance * fmaxl(fabsl(a), fabsl(a0)) &&
-		    fabsl(b - b0) <= tolerance * fmaxl(fabsl(b), fabsl(b0)))
+		if (isnan(b) || (out.iterations && fabsl(a - a0) <= tolerance * fmaxl(fabsl(a), fabsl(a0)) &&
+		                 fabsl(b - b0) <= tolerance * fmaxl(fabsl(b), fabsl(b0))))
 			break;
 		for (size_t i = 0; i < n; i++)
-			v[i] = fabsl((y[i] - a - b * x[i]) * f[i]);
+			v[i] = fabsl(((y[i] - my) - b * (x[i] - mx)) * f[i]);
 		qsort(v, n, sizeof *v, ascending);
 		long double s = (v[1 + (n - 2) / 2] + v[1 + (n - 1) / 2]) / 2 / 0.6745L;
 		s = fmaxl(s, least);
 		for (size_t i = 0; i < n; i++) {
-			long double u = (y[i] - a - b * x[i]) * f[i] / (4.685L * s);
+			long double u = ((y[i] - my) - b * (x[i] - mx)) * f[i] / (4.685L * s);
 			w[i] = fabsl(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
 		}
 	}
 	out.status = out.iterations > 100;
 	out.intercept = (double)a;
 	out.slope = (double)b;
+	free(x);
+	free(y);
 	free(f);
 	free(w);
 	free(v);
 	return out;
+}
+
+ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n)
+{
+	return slow_fit_shaken(x, y, n, 0, NULL);
 }
 
 #endif

@@ -60,7 +60,8 @@ static double means_deviation(const struct means *means, struct sums *s, size_t 
 {
 	double worst = 0;
 	for (size_t i = 0; i < n; i++) {
-		const long double wanted = s->count[i] && mean > 0 ? s->sum[i] / s->count[i] / mean : 0;
+		const long double exact = s->count[i] && mean > 0 ? s->sum[i] / s->count[i] / mean : 0;
+		const long double wanted = exact < DENSITY_DARK ? 0 : exact;
 		if (means->valid[i] != (s->count[i] != 0) || means->count[i] != s->count[i])
 			worst = INFINITY;
 		/* below 1e-290 of the mean a double may have lost digits */

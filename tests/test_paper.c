@@ -298,6 +298,41 @@ static void the_unit_of_the_input_does_not_matter(void **user)
 	lattice_free(&l);
 }
 
+/*
+ * A sixth of the cells, and so some whole rows of slices, are so dark that a scaled table says 0 there. Which it is, and how
+ * dark, must not matter: ratios of such rows to their means were as large as any.
+ */
+static void how_dark_the_dark_is_does_not_matter(void **user)
+{
+	(void)user;
+	static const double darkness[] = {0, DBL_TRUE_MIN, 17 * DBL_TRUE_MIN, 1e-200, 1e-60};
+	const struct lattice_dims d = {8, 8, 8};
+	struct expansion first = {0};
+	for (size_t n = 0; n < sizeof darkness / sizeof *darkness; n++) {
+		struct lattice l;
+		struct model *model;
+		struct expansion table;
+		state = 77;
+		lattice_make(&l, d, 0);
+		for (size_t i = 0; i < lattice_cells(d); i++) {
+			const bool dark = i / 8 % 3 == 0 || uniform() < 0.2;
+			for (int c = 0; c < 3; c++)
+				l.rgb[c][i] = dark ? darkness[n] : l.rgb[c][i];
+		}
+		lattice_validate(&l);
+		fit_and_measure(&l, &model, &table);
+		if (n == 0)
+			first = table;
+		for (int c = 0; n && c < 3; c++)
+			assert_memory_equal(first.rgb[c], table.rgb[c], lattice_cells(d) * sizeof *table.rgb[c]);
+		if (n)
+			expansion_free(&table);
+		model_free(model);
+		lattice_free(&l);
+	}
+	expansion_free(&first);
+}
+
 static void a_field_of_zeros_is_not_a_field_of_ones(void **user)
 {
 	(void)user;
@@ -357,6 +392,7 @@ int main(void)
 		cmocka_unit_test(lattices_with_little_valid_are_fitted),
 		cmocka_unit_test(extremes_side_by_side_stay_finite),
 		cmocka_unit_test(the_unit_of_the_input_does_not_matter),
+		cmocka_unit_test(how_dark_the_dark_is_does_not_matter),
 		cmocka_unit_test(a_field_of_zeros_is_not_a_field_of_ones),
 		cmocka_unit_test(unknown_profiles_and_wrong_tables_are_refused),
 	};

@@ -231,6 +231,110 @@ static void weights_that_leave_a_constant_x_keep_the_line_in_bounds(void **user)
 	}
 }
 
+/* The larger deviation of two lines at both ends of x, relative to the second line's larger value. */
+static double line_deviation(double intercept, double slope, const struct oracle *want, const double *x, size_t n)
+{
+	double low = x[0], high = x[0], worst = 0;
+	for (size_t i = 0; i < n; i++) {
+		low = fmin(low, x[i]);
+		high = fmax(high, x[i]);
+	}
+	const double size = fmax(fabs(want->intercept + want->slope * low), fabs(want->intercept + want->slope * high));
+	for (int end = 0; end < 2; end++) {
+		const double at = end ? high : low;
+		worst = fmax(worst, fabs((intercept - want->intercept) + (slope - want->slope) * at) / size);
+	}
+	return worst;
+}
+
+/*
+ * Nearly all of x is within 1e-5 of 20, in steps of single precision, and what decides the slope is what little differs there:
+ * the iterations arrive from bright observations far away, and the residuals become 1e-10 of the values.
+ */
+static void a_crowd_far_from_zero_is_fitted_to_the_last_digits(void **user)
+{
+	(void)user;
+	double worst = 0;
+	for (unsigned seed = 1; seed <= 60; seed++) {
+		enum { SIDE = 8, CELLS = SIDE * SIDE * SIDE };
+		struct robust_fit fit;
+		state = seed;
+		uniform();
+		const double width = 0.02 + 0.06 * uniform();
+		for (int falling = 0; falling < 2; falling++) {
+			for (size_t i = 0; i < CELLS; i++) {
+				const double h = (double)(i / SIDE / SIDE) / SIDE, d = (double)(i / SIDE % SIDE) / SIDE, p = (double)(i % SIDE) / SIDE;
+				const double lobe = exp(-h * h * h * h / (width * width)) * (1 + 3 * pow(d, 5)) * (1 + 0.2 * d * cos(6.283185307179586 * p));
+				const double value = 0.1 + 5 * lobe, rest = fmax(0, 20 - value);
+				xs[i] = (double)(float)(value + rest + value * value);
+				ys[i] = falling ? rest : value;
+			}
+			assert_int_equal(robust_fit(xs, ys, CELLS, &fit, NULL), BP_OK);
+			const struct oracle slow = slow_fit(xs, ys, CELLS);
+			uint64_t random = seed;
+			double moved = 0; /* by half a unit of the observations' last places */
+			for (int trial = 0; trial < 4; trial++) {
+				const struct oracle shaken = slow_fit_shaken(xs, ys, CELLS, 0x1p-53L, &random);
+				moved = fmax(moved, line_deviation(shaken.intercept, shaken.slope, &slow, xs, CELLS));
+			}
+			if (!slow.status && isfinite(slow.slope)) /* where only one x is left, nothing determines a line */
+				worst = fmax(worst, line_deviation(fit.intercept, fit.slope, &slow, xs, CELLS) / fmax(1e-14, 4 * moved));
+		}
+	}
+	assert_true(worst <= 1);
+}
+
+/* Half of all is exactly 0: the intercept sinks to rounding errors while the slope still moves. */
+static void an_intercept_of_next_to_nothing_does_not_end_the_iterations_early(void **user)
+{
+	(void)user;
+	double worst = 0;
+	for (unsigned seed = 1; seed <= 200; seed++) {
+		const size_t n = 64 + 3 * seed;
+		struct robust_fit fit;
+		state = seed;
+		uniform();
+		const double width = 0.02 + 0.3 * uniform();
+		for (size_t i = 0; i < n; i++) {
+			const double h = (double)(i * 8 / n) / 8, d = (double)(i % 8) / 8;
+			const double value = uniform() < 0.5 ? 0 : 0.1 + 5 * exp(-h * h * h * h / (width * width)) * (1 + 3 * pow(d, 5));
+			xs[i] = (double)(float)(1.9 * value + (value > 0 ? 0.07 : 0));
+			ys[i] = 0.6 * value + (value > 0 ? 0.02 : 0);
+		}
+		assert_int_equal(robust_fit(xs, ys, n, &fit, NULL), BP_OK);
+		const struct oracle slow = slow_fit(xs, ys, n);
+		/* The reference itself still moves where it stops. */
+		const double step = line_deviation(slow.intercept - slow.step[0], slow.slope - slow.step[1], &slow, xs, n);
+		if (!slow.status && isfinite(slow.slope))
+			worst = fmax(worst, line_deviation(fit.intercept, fit.slope, &slow, xs, n) - (fit.iterations == slow.iterations ? 0 : 4 * step));
+	}
+	assert_true(worst <= 1e-12);
+}
+
+/* The mean of the many is 0: the line sinks to it as far as numbers go, and where it stops would follow the unit of measure. */
+static void a_channel_that_is_mostly_dark_has_a_line_of_zero(void **user)
+{
+	(void)user;
+	struct lattice l;
+	struct colour_fit colour[3];
+	float achromatic[512];
+	assert_int_equal(lattice_alloc((struct lattice_dims){8, 8, 8}, &l, NULL), BP_OK);
+	for (unsigned seed = 1; seed <= 40; seed++) {
+		state = seed;
+		for (size_t i = 0; i < 512; i++) {
+			const bool dark = uniform() < 0.75;
+			achromatic[i] = (float)(0.1 + uniform());
+			for (int c = 0; c < 3; c++)
+				l.rgb[c][i] = dark ? (seed % 2 ? DBL_TRUE_MIN : 0) : uniform() + 0.1;
+		}
+		lattice_validate(&l);
+		assert_int_equal(robust_fit_colour(&l, achromatic, 0.7, colour, NULL), BP_OK);
+		for (int c = 0; c < 3; c++)
+			assert_true(colour[c].diffuse == 0 && colour[c].specular == 0);
+	}
+	lattice_free(&l);
+}
+
 static void one_observation_is_its_own_intercept(void **user)
 {
 	(void)user;
@@ -330,7 +434,7 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 		excess[i] = (float)(1e-3 * uniform());
 	for (size_t n = N - 19; n <= N; n++) {
 		const struct robust_sample sample = {xs, ys, excess, n};
-		const struct robust_line line = {1.5, 2.9, 1.6};
+		const struct robust_line line = {1.5, 2.9, 1.6, n % 2 ? 0 : 1e-17};
 		struct robust_sums p, q;
 		size_t below_a, below_b;
 		kernels_plain.robust_sums(&sample, &line, 0.7, &p);
@@ -357,6 +461,9 @@ int main(void)
 		cmocka_unit_test(a_large_common_offset_agrees_with_gsl),
 		cmocka_unit_test(a_few_observations_agree_with_gsl),
 		cmocka_unit_test(weights_that_leave_a_constant_x_keep_the_line_in_bounds),
+		cmocka_unit_test(a_crowd_far_from_zero_is_fitted_to_the_last_digits),
+		cmocka_unit_test(an_intercept_of_next_to_nothing_does_not_end_the_iterations_early),
+		cmocka_unit_test(a_channel_that_is_mostly_dark_has_a_line_of_zero),
 		cmocka_unit_test(one_observation_is_its_own_intercept),
 		cmocka_unit_test(the_ends_of_the_range_of_double_are_fitted),
 		cmocka_unit_test(the_rejected_share_is_what_the_weights_say),

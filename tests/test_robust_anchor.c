@@ -33,7 +33,7 @@ static void make_sample(void)
 	}
 }
 
-static const struct robust_line LINE = {0.05, 0.0501, 0.81};
+static const struct robust_line LINE = {0.05, 0.0501, 0.81, 0};
 static const double MEDIAN = 4e-4, LIMIT = 3e-3;
 
 static struct anchor_reach reach_of(double steps)
@@ -68,7 +68,7 @@ static void sums_within_reach_are_those_of_the_plain_pass(void **unused)
 		/* the corners of the reach (but for rounding), its middle and the middles of its sides */
 		const double a = 0.999 * (n % 3 - 1), b = 0.999 * (n / 3 % 3 - 1), c = n / 9 - 1;
 		const double limit = c < 0 ? reach.limit_low : c > 0 ? reach.limit_high : LIMIT;
-		struct robust_line line = {LINE.centre_x, LINE.centre_y + a * reach.centre_y, LINE.slope + b * reach.slope};
+		struct robust_line line = {LINE.centre_x, LINE.centre_y + a * reach.centre_y, LINE.slope + b * reach.slope, 0};
 		struct robust_sums plain, fast;
 		assert_true(robust_anchor_reaches(&anchor, &line));
 		kernels_get()->robust_sums(&SAMPLE, &line, 1 / limit, &plain);
@@ -99,7 +99,7 @@ static void the_median_is_found_among_the_near_ones(void **unused)
 	const struct robust_sample near = {anchor.near.x, anchor.near.y, anchor.near.excess, anchor.near.count};
 	for (int n = 0; n < 9; n++) {
 		const struct robust_line line = {LINE.centre_x, LINE.centre_y + (n % 3 - 1) * reach.centre_y,
-		                                 LINE.slope + (n / 3 - 1) * reach.slope};
+		                                 LINE.slope + (n / 3 - 1) * reach.slope, 0};
 		for (int m = 0; m < 2; m++) {
 			const double at = m ? reach.median_low : reach.median_high;
 			kernels_get()->robust_scale(&SAMPLE, &line, at, at, inside, &less);

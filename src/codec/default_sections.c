@@ -198,7 +198,7 @@ static bp_status default_decode(const struct record_head *head, const struct sec
 
 const struct profile_codec DEFAULT_CODEC = {
 	.profile = PROFILE_DEFAULT,
-	.version = 2,
+	.version = 3,
 	.kinds = KINDS,
 	.kind_count = sizeof KINDS / sizeof *KINDS,
 	.encode = default_encode,

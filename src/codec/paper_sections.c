@@ -363,6 +363,6 @@ static bp_status paper_decode(const struct record_head *head, const struct secti
 }
 
 const struct profile_codec PAPER_CODEC = {
-	.profile = PROFILE_PAPER, .version = 2, .kinds = KINDS, .kind_count = sizeof KINDS / sizeof *KINDS,
+	.profile = PROFILE_PAPER, .version = 3, .kinds = KINDS, .kind_count = sizeof KINDS / sizeof *KINDS,
 	.encode = paper_encode, .decode = paper_decode,
 };

@@ -36,9 +36,10 @@ struct robust_sample {
 	size_t n;
 };
 
-/* y = centre_y + slope (x - centre_x) */
+/* y = centre_y + rest_y + slope (x - centre_x) */
 struct robust_line {
 	double centre_x, centre_y, slope;
+	double rest_y; /* what rounding took from centre_y; 0 where that is nothing beside the residuals. Anchors know none. */
 };
 
 /* Sums over the sample: dx = x - centre_x, r = y - line, w = q^2 the bisquare weight. */

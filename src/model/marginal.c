@@ -91,11 +91,20 @@ static void sums_clear(struct density *out)
 	memset(out->hphi.count, 0, (size_t)d.theta_h * d.phi_d * sizeof(uint32_t));
 }
 
+/*
+ * The mean being 1. Where a whole row is as dark as that, its copulas are ratios of next to nothing: digits that the same table in
+ * another unit has lost, or 0 / 0 where it says 0.
+ */
+static double dark_removed(double v)
+{
+	return v < DENSITY_DARK ? 0 : v;
+}
+
 static void means_finish(struct means *means, size_t n, double factor)
 {
 	for (size_t i = 0; i < n; i++) {
 		means->valid[i] = means->count[i] != 0;
-		means->value[i] = means->count[i] ? means->value[i] * factor / means->count[i] : 0;
+		means->value[i] = means->count[i] ? dark_removed(means->value[i] * factor / means->count[i]) : 0;
 	}
 }
 
@@ -135,6 +144,6 @@ bp_status density_build(const struct lattice *lattice, struct density *out, bp_e
 	means_finish(&out->hd, nh * nd, inverse);
 	means_finish(&out->hphi, nh * np, inverse);
 	for (size_t i = 0; i < cells; i++)
-		out->value[i] *= inverse;
+		out->value[i] = dark_removed(out->value[i] * inverse);
 	return BP_OK;
 }

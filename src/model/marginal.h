@@ -13,6 +13,9 @@
 
 #include "../merl/lattice.h"
 
+/* Densities and means below this are 0: the smallest normal number of single precision, in which tables are decoded. */
+#define DENSITY_DARK 0x1p-126
+
 /* Means over one index or one pair of indices. */
 struct means {
 	double *value;  /* >= 0; 0 where !valid */
@@ -31,7 +34,7 @@ struct density {
 
 /*
  * Builds the density and all its means from a lattice with at least one valid cell, which must outlive it.
- * Relative errors of the means are below 1e-14 (block sums). Values from 1e-300 to 1e300 are in range.
+ * Relative errors of the means are below 1e-14 (block sums), those below DENSITY_DARK apart. Values from 1e-300 to 1e300 are in range.
  */
 bp_status density_build(const struct lattice *lattice, struct density *out, bp_error *error);
 void density_free(struct density *density);

@@ -77,7 +77,7 @@ static void design_prepare(struct design *design)
 	const struct kernels *kernels = kernels_get();
 	const double *x = design->x, n = (double)design->n;
 	const struct robust_sample sample = {x, x, design->excess, design->n};
-	struct robust_line line = {x[0], x[0], 0};
+	struct robust_line line = {x[0], x[0], 0, 0};
 	struct robust_sums sums;
 
 	for (size_t i = 0; i < design->n; i++)
@@ -152,6 +152,18 @@ static bool run_next(const struct lattice *lattice, size_t *start, size_t *end)
 	return true;
 }
 
+/*
+ * Where most of a channel is dark, its line sinks towards 0 for as long as there are numbers to sink to; where that ends would
+ * hang on the unit of measure. Terms beyond the range of single precision are 0: the largest x and y are about 1 here.
+ */
+static void fit_still(struct robust_fit *fit)
+{
+	if (fabs(fit->intercept) < FLT_MIN)
+		fit->intercept = 0;
+	if (fabs(fit->slope) < FLT_MIN)
+		fit->slope = 0;
+}
+
 bp_status robust_fit_colour(const struct lattice *lattice, const float *achromatic, double unit, struct colour_fit out[3],
                             bp_error *error)
 {
@@ -197,6 +209,7 @@ bp_status robust_fit_colour(const struct lattice *lattice, const float *achromat
 			fit = (struct robust_fit){.intercept = y[0], .converged = true};
 		else
 			robust_iterate(&design, y, &fit);
+		fit_still(&fit);
 		fit_unscale(&fit, design.x_exponent, y_exponent);
 		out[c] = (struct colour_fit){.diffuse = fit.intercept,
 		                             .specular = fit.slope,

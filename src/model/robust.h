@@ -14,9 +14,9 @@
  * over those that still have weight) the two coefficients are not determined; the answer is then the one of least
  * norm after the columns 1 and x were scaled by powers of two to similar size, which is GSL's choice too.
  *
- * One deviation, for speed: an intercept whose change is below the rounding errors of the data (8 eps times the
- * size of the terms it is the difference of) counts as converged even if it is nearly 0 itself; GSL goes on to
- * its iteration limit there, with the same result.
+ * One deviation, for speed: where the intercept's change is below the rounding errors of the data (8 eps times the
+ * size of the terms it is the difference of) and the slope's below 8 eps of itself, they count as converged even if the
+ * intercept is nearly 0; GSL goes on to its iteration limit there, with the same result.
  *
  * On measured materials the slope, which a few bright cells decide, often creeps on for hundreds of iterations; the
  * limit of 100 then ends it before it converges, here as in GSL. Converging faster by extrapolation was tried: it ends
@@ -28,7 +28,10 @@
  * below a bracket around the expected median and collecting the few inside it. Where the line moves little, one
  * pass serves many iterations (robust_anchor.h); whether it is worth that is told from a sample of the observations.
  * Sums are compensated and taken about the weighted mean of the iteration before, so neither a large common
- * offset nor a tiny or huge unit (1e-300 to 1e300) loses digits.
+ * offset nor a tiny or huge unit (1e-300 to 1e300) loses digits. Where the weights leave for observations far from that
+ * mean, against their spread, the sums are taken once more about the new one; and where residuals are so small that the
+ * rounding of the mean itself is seen in them, what it took is subtracted from each. Then the lines are those of the same
+ * steps in long double to what half a unit of the observations' last places moves (tests/stress.c).
  */
 #ifndef MODEL_ROBUST_H
 #define MODEL_ROBUST_H
@@ -52,7 +55,7 @@ bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_f
 
 /*
  * Colour: for each channel the regression of the measured values (1/sr) on unit * achromatic over the
- * lattice's valid cells; achromatic[cells].
+ * lattice's valid cells; achromatic[cells]. Terms below 2^-126 of the channel's largest value are 0.
  */
 bp_status robust_fit_colour(const struct lattice *lattice, const float *achromatic, double unit, struct colour_fit out[3],
                             bp_error *error);

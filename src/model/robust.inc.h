@@ -2,13 +2,17 @@
 
 enum { ROBUST_BLOCK = 512, ROBUST_GROUP = 16 };
 
-static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const struct robust_line *line, double low, double high,
-                                   double *inside, size_t *below)
+/*
+ * Either pass is compiled twice: with the line's rest, which few samples need, and without. The argument `rested` is known at
+ * each of its calls.
+ */
+static inline __attribute__((always_inline)) size_t KERNEL(scale_pass)(const struct robust_sample *sample, const struct robust_line *line,
+                                                                       double low, double high, double *inside, size_t *below, bool rested)
 {
 	const double *x = sample->x, *y = sample->y;
 	const double *excess = sample->excess;
 	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), b = LANES_ALL(line->slope);
-	const lanes4 lo = LANES_ALL(low), hi = LANES_ALL(high);
+	const lanes4 lo = LANES_ALL(low), hi = LANES_ALL(high), rest = LANES_ALL(line->rest_y);
 	const mask4 sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
 	mask4 less = {0, 0, 0, 0};
 	size_t count = 0, n4 = sample->n / ROBUST_GROUP * ROBUST_GROUP;
@@ -19,7 +23,10 @@ static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const str
 		for (int g = 0; g < ROBUST_GROUP / 4; g++) {
 			const size_t at = i + 4 * (size_t)g;
 			lanes4 f = LANES_LOAD(excess + at);
-			lanes4 v = (LANES_LOAD(y + at) - c) - b * (LANES_LOAD(x + at) - xo);
+			lanes4 dy = LANES_LOAD(y + at) - c;
+			if (rested)
+				dy -= rest;
+			lanes4 v = dy - b * (LANES_LOAD(x + at) - xo);
 			v = v + v * f;
 			v = (lanes4)((mask4)v & sign);
 			r[g] = v;
@@ -35,7 +42,10 @@ static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const str
 	}
 	*below = (size_t)-(less[0] + less[1] + less[2] + less[3]);
 	for (size_t i = n4; i < sample->n; i++) {
-		double v = (y[i] - line->centre_y) - line->slope * (x[i] - line->centre_x);
+		double dy = y[i] - line->centre_y;
+		if (rested)
+			dy -= line->rest_y;
+		double v = dy - line->slope * (x[i] - line->centre_x);
 		v = v + v * excess[i];
 		v = v < 0 ? -v : v;
 		*below += v < low;
@@ -43,6 +53,13 @@ static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const str
 		count += v >= low && v <= high;
 	}
 	return count;
+}
+
+static size_t KERNEL(robust_scale)(const struct robust_sample *sample, const struct robust_line *line, double low, double high,
+                                   double *inside, size_t *below)
+{
+	return line->rest_y != 0 ? KERNEL(scale_pass)(sample, line, low, high, inside, below, true)
+	                         : KERNEL(scale_pass)(sample, line, low, high, inside, below, false);
 }
 
 /* Adds x to a sum whose rounding errors gather in *rest (Neumaier). */
@@ -53,11 +70,11 @@ static inline void KERNEL(add)(double *sum, double *rest, double x)
 	*sum = t;
 }
 
-static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct robust_line *line, double inverse_scale,
-                                struct robust_sums *out)
+static inline __attribute__((always_inline)) void KERNEL(sums_pass)(const struct robust_sample *sample, const struct robust_line *line,
+                                                                    double inverse_scale, struct robust_sums *out, bool rested)
 {
 	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), b = LANES_ALL(line->slope);
-	const lanes4 scale = LANES_ALL(inverse_scale), one = LANES_ALL(1), zero = LANES_ALL(0);
+	const lanes4 scale = LANES_ALL(inverse_scale), one = LANES_ALL(1), zero = LANES_ALL(0), rest_y = LANES_ALL(line->rest_y);
 	double sum[6] = {0}, rest[6] = {0};
 	mask4 rejected = {0, 0, 0, 0};
 
@@ -70,6 +87,8 @@ static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct
 
 		for (; i + 4 <= m; i += 4) {
 			lanes4 dx = LANES_LOAD(x + i) - xo, dy = LANES_LOAD(y + i) - c;
+			if (rested)
+				dy -= rest_y;
 			lanes4 r = dy - b * dx, f = LANES_LOAD(excess + i);
 			lanes4 u = (r + r * f) * scale, q = one - u * u;
 			mask4 kept = (mask4)(q > zero);
@@ -84,7 +103,10 @@ static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct
 			s5 += wx * r;
 		}
 		for (int l = 0; i < m; i++, l++) { /* the last few, one lane each */
-			double dx = x[i] - line->centre_x, r = (y[i] - line->centre_y) - line->slope * dx;
+			double dx = x[i] - line->centre_x, dy = y[i] - line->centre_y;
+			if (rested)
+				dy -= line->rest_y;
+			double r = dy - line->slope * dx;
 			double u = (r + r * excess[i]) * inverse_scale, q = 1 - u * u;
 			rejected[l] -= q <= 0;
 			q = q > 0 ? q : 0;
@@ -110,4 +132,13 @@ static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct
 	out->wr = sum[4] + rest[4];
 	out->wxr = sum[5] + rest[5];
 	out->rejected = (size_t)-(rejected[0] + rejected[1] + rejected[2] + rejected[3]);
+}
+
+static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct robust_line *line, double inverse_scale,
+                                struct robust_sums *out)
+{
+	if (line->rest_y != 0)
+		KERNEL(sums_pass)(sample, line, inverse_scale, out, true);
+	else
+		KERNEL(sums_pass)(sample, line, inverse_scale, out, false);
 }

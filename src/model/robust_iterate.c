@@ -24,7 +24,7 @@ void robust_iterate(struct design *design, const double *y, struct robust_fit *o
 		.sample = {design->x, y, design->excess, design->n},
 		.picks = picks_copy(design, y),
 		.inside = design->inside,
-		.line = {design->mean_x, y[0], 0},
+		.line = {design->mean_x, y[0], 0, 0},
 		.anchor = design->anchor.near.capacity ? &design->anchor : NULL,
 	};
 

@@ -73,6 +73,13 @@ static double residual_median(struct walk *walk, const struct robust_sample *sam
 
 /* ---- least squares ---- */
 
+/* The place a step of mean_dx leads to. */
+static double centre_moved(double centre_x, double mean_dx)
+{
+	const double x = centre_x + mean_dx;
+	return fabs(x) <= 16 * DBL_EPSILON * fabs(mean_dx) ? 0 : x; /* what is left of a cancellation is noise */
+}
+
 /* The power of two that brings a column's absolute sum into [1/2, 1]. */
 static double balance(double absolute_sum)
 {
@@ -85,22 +92,20 @@ static double balance(double absolute_sum)
 
 /*
  * One weighted step from *line, given the sums about it: to the least squares line, or, when the weighted x
- * do not span a line, to the solution of least balanced norm.
+ * do not span a line, to the solution of least balanced norm. Returns what the new centre_y, and centre_x by way of
+ * the slope, lack through rounding.
  */
-static void line_step(const struct robust_sums *s, struct robust_line *line)
+static double line_step(const struct robust_sums *s, struct robust_line *line)
 {
+	const struct robust_line from = *line;
 	const double mean_dx = s->wx / s->w, mean_r = s->wr / s->w;
 	const double sxr = s->wxr - s->wr * mean_dx, y = line->centre_y + line->slope * mean_dx + mean_r;
-	double sxx = s->wxx - s->wx * mean_dx, x = line->centre_x + mean_dx;
+	double sxx = s->wxx - s->wx * mean_dx;
+	const double x = centre_moved(line->centre_x, mean_dx);
 
-	/*
-	 * What is left of a cancellation is noise: where the weighted x are constant it must count as 0, or the slope grows
-	 * without bound. True values this small are seen in the next step, about the new centre.
-	 */
+	/* What is left of a cancellation is noise: where the weighted x are constant it must count as 0, or the slope grows without bound. */
 	if (sxx <= 16 * DBL_EPSILON * s->wxx)
 		sxx = 0;
-	if (fabs(x) <= 16 * DBL_EPSILON * fabs(mean_dx))
-		x = 0;
 	const double d0 = balance(s->root), d1 = balance(s->root * fabs(x));
 	/* Squared singular values of the balanced columns. */
 	const double trace = s->w / (d0 * d0) + (sxx + s->w * x * x) / (d1 * d1);
@@ -115,6 +120,10 @@ static void line_step(const struct robust_sums *s, struct robust_line *line)
 		double a0 = 1 / d0, a1 = x / d1;
 		line->slope = y * a1 / (a0 * a0 + a1 * a1) / d1;
 	}
+	const double missed = (x - from.centre_x) - mean_dx; /* the line passes beside x, through the weighted mean */
+	const double step = from.slope * mean_dx + mean_r + line->slope * missed + from.rest_y;
+	line->rest_y = 0;
+	return (from.centre_y - y) + step;
 }
 
 /* ---- the walk ---- */
@@ -145,7 +154,8 @@ void walk_start(struct walk *walk)
 	if (!(walk->sigma_least > 0))
 		walk->sigma_least = 1;
 	kernels->robust_sums(&walk->sample, &walk->line, 0, &walk->sums);
-	line_step(&walk->sums, &walk->line);
+	walk->lack = line_step(&walk->sums, &walk->line);
+	walk->careful = false;
 }
 
 static double limit_of(const struct walk *walk, double median)
@@ -153,15 +163,57 @@ static double limit_of(const struct walk *walk, double median)
 	return TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least);
 }
 
+/*
+ * Do weights of this limit feel the rounding of the line's centre, half a unit of its last places? Below 2^-37 of the limit they
+ * change by as little.
+ */
+static bool limit_fine(const struct robust_line *line, double limit)
+{
+	return fabs(line->centre_y) + fabs(line->slope * line->centre_x) > 0x1p16 * limit;
+}
+
+/*
+ * Do the weighted x lie so far from the centre, against their spread, that Sxx loses digits? So it is where the weights have
+ * just left a few bright observations for many dark ones, all nearly the same. A slope that is wrong in its fifth digit would
+ * be forgotten only slowly in the steps after.
+ */
+static bool sums_cancel(const struct robust_sums *s)
+{
+	return s->wxx - s->wx * (s->wx / s->w) < 0x1p-20 * s->wxx;
+}
+
+/* The same line about the weighted mean. */
+static void line_recentre(struct robust_line *line, double mean_dx, bool careful)
+{
+	const double x = centre_moved(line->centre_x, mean_dx), step = line->rest_y + line->slope * (x - line->centre_x);
+	const double y = line->centre_y + step;
+
+	line->rest_y = careful ? (line->centre_y - y) + step : 0;
+	line->centre_x = x;
+	line->centre_y = y;
+}
+
 /* One iteration over all observations. */
 static void step_plain(struct walk *walk)
 {
 	/* Few values lie within 2 % of the median; of a small sample, more may be gathered for what a guess would cost. */
 	const double widest = fmin(fmax(ROBUST_PICKS_MAX / (double)walk->sample.n, 0.02), 0.25);
-	const double median = residual_median(walk, &walk->sample, &walk->line, 0, widest);
+	double limit = limit_of(walk, residual_median(walk, &walk->sample, &walk->line, 0, widest));
 
-	walk->kernels->robust_sums(&walk->sample, &walk->line, 1 / limit_of(walk, median), &walk->sums);
-	line_step(&walk->sums, &walk->line);
+	if (!walk->careful && limit_fine(&walk->line, limit)) {
+		walk->careful = true;
+		walk->line.rest_y = walk->lack;
+		walk->next.spread = 0;
+		limit = limit_of(walk, residual_median(walk, &walk->sample, &walk->line, 0, widest));
+	}
+	walk->kernels->robust_sums(&walk->sample, &walk->line, 1 / limit, &walk->sums);
+	if (sums_cancel(&walk->sums)) {
+		line_recentre(&walk->line, walk->sums.wx / walk->sums.w, walk->careful);
+		walk->kernels->robust_sums(&walk->sample, &walk->line, 1 / limit, &walk->sums);
+	}
+	walk->lack = line_step(&walk->sums, &walk->line);
+	if (walk->careful)
+		walk->line.rest_y = walk->lack;
 }
 
 /* The same iteration from the anchor; false, and nothing done, where line or scale are out of its reach. */
@@ -180,12 +232,16 @@ static bool step_anchored(struct walk *walk)
 	const double median = residual_median(walk, &near, &line, below, 1);
 	const double limit = limit_of(walk, median);
 	if (median < anchor->reach.median_low || median > anchor->reach.median_high || limit < anchor->reach.limit_low ||
-	    limit > anchor->reach.limit_high) {
+	    limit > anchor->reach.limit_high || limit_fine(&line, limit)) {
 		walk->next = expected;
 		return false;
 	}
 	robust_anchor_sums(anchor, &line, limit, &walk->sums);
-	line_step(&walk->sums, &line);
+	if (sums_cancel(&walk->sums)) {
+		walk->next = expected;
+		return false;
+	}
+	walk->lack = line_step(&walk->sums, &line);
 	walk->line = line;
 	return true;
 }
@@ -267,7 +323,7 @@ void walk_step(struct walk *walk, uint32_t left)
 {
 	const struct robust_line from = walk->line;
 
-	if (!walk->anchor)
+	if (!walk->anchor || walk->careful)
 		step_plain(walk);
 	else if (!(walk->anchor->placed && step_anchored(walk)) && !(anchor_here(walk, left) && step_anchored(walk)))
 		step_plain(walk);
@@ -282,9 +338,9 @@ static bool close_to(double a, double b, double tolerance)
 
 bool line_settled(const struct robust_line *from, const struct robust_line *to)
 {
-	const double tolerance = sqrt(DBL_EPSILON), terms = fabs(to->centre_y) + fabs(to->slope * to->centre_x);
+	const double tolerance = sqrt(DBL_EPSILON), rounding = 8 * DBL_EPSILON;
+	const double terms = fabs(to->centre_y) + fabs(to->slope * to->centre_x);
 
-	return close_to(to->slope, from->slope, tolerance) &&
-	       (close_to(line_intercept(to), line_intercept(from), tolerance) ||
-	        fabs(line_intercept(to) - line_intercept(from)) <= 8 * DBL_EPSILON * terms);
+	return (close_to(to->slope, from->slope, tolerance) && close_to(line_intercept(to), line_intercept(from), tolerance)) ||
+	       (close_to(to->slope, from->slope, rounding) && fabs(line_intercept(to) - line_intercept(from)) <= rounding * terms);
 }

@@ -31,6 +31,8 @@ struct walk {
 	struct expectation next;
 	struct robust_sums sums;  /* of the last step */
 	struct robust_line before; /* and where it stood one step ago */
+	double lack;   /* what rounding took from line.centre_y */
+	bool careful;  /* the residuals are so small that it counts: line.rest_y = lack */
 	struct robust_anchor *anchor; /* NULL where there is none */
 };
 
@@ -44,7 +46,7 @@ void walk_step(struct walk *walk, uint32_t left);
 
 static inline double line_intercept(const struct robust_line *line)
 {
-	return line->centre_y - line->slope * line->centre_x;
+	return (line->centre_y - line->slope * line->centre_x) + line->rest_y;
 }
 /* Does the step from one line to the other meet the criterion to stop? */
 bool line_settled(const struct robust_line *from, const struct robust_line *to);
