@@ -109,7 +109,7 @@ job_asan() {
 	build asan CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow && unit_tests asan && cli_tests asan
 }
 job_clang() { build clang CC=clang CFLAGS="-O2 -g -Werror"; }
-job_install() { build test CFLAGS="-O3 -g -Werror" && check "installed library" "$logs/install.log" tests/install.sh build/test; }
+job_install() { build test CFLAGS="-O3 -g -Werror" && check "installed library" "$logs/install.log" tests/install.sh build/test CFLAGS="-O3 -g -Werror"; }
 job_python() {
 	build test CFLAGS="-O3 -g -Werror" || return
 	check "python reader, vectors" "$logs/python-vectors.log" tests/python_reader.sh build/test
