@@ -137,7 +137,8 @@ $(BUILD)/tests/test_bench_%: $(BUILD)/tests/test_bench_%.o $(BENCH_PARTS)
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $< $(BENCH_PARTS) -lcmocka $(BENCH_LIBS) $(TOOL_LIBS) $(LIBRARY_LIBS)
 
-.PRECIOUS: $(BUILD)/tests/%.o
+# tests' objects too: without them a second make compiled and linked every test again
+.PRECIOUS: $(BUILD)/%.o
 tests: $(TESTS)
 
 check: check-unit check-symbols check-cli
