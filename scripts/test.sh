@@ -122,7 +122,7 @@ job_stress() {
 }
 job_faults() {
 	build test CFLAGS="-O3 -g -Werror" || return
-	check "faults" "$logs/faults.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" faults
+	check "faults" "$logs/faults.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" FAULTS_ASAN=build/asan faults
 }
 job_bench() {
 	build test CFLAGS="-O3 -g -Werror" || return
