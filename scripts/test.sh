@@ -118,7 +118,7 @@ unit_tests() {
 # Runs tests/cli with the tool of build/$1 and adds its totals.
 cli_tests() {
 	local log=$logs/cli-$1.log line
-	BRDFPACK=$PWD/build/$1/brdfpack timeout 500 tests/cli/run >"$log" 2>&1
+	BRDFPACK=$PWD/build/$1/brdfpack timeout 900 tests/cli/run >"$log" 2>&1
 	line=$(tail -n 1 "$log")
 	if [[ $line =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed ]]; then
 		passed=$((passed + BASH_REMATCH[1]))
