@@ -137,7 +137,8 @@ $(BUILD)/tests/test_bench_%: $(BUILD)/tests/test_bench_%.o $(BENCH_PARTS)
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $< $(BENCH_PARTS) -lcmocka $(BENCH_LIBS) $(TOOL_LIBS) $(LIBRARY_LIBS)
 
-.PRECIOUS: $(BUILD)/tests/%.o
+# tests' objects too: without them a second make compiled and linked every test again
+.PRECIOUS: $(BUILD)/%.o
 tests: $(TESTS)
 
 check: check-unit check-symbols check-cli
@@ -162,6 +163,8 @@ stress-builds: # the same decoded values from several compilers and levels?
 
 # Faults survived: damaged archives under sanitizers, killed and starved builds, threads. FAULTS_FLAGS=--long takes longer.
 FAULTS_FLAGS ?=
+# where the sanitized objects go: another folder of the same flags need not be built twice
+FAULTS_ASAN  ?= $(BUILD)/asan
 $(BUILD)/tests/faults: $(BUILD)/tests/faults.o $(BUILD)/tests/archive_walk.o $(BUILD)/internal.a
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lpthread $(LIBRARY_LIBS)
@@ -169,11 +172,12 @@ $(BUILD)/tests/fault_shim.so: tests/fault_shim.c
 	@mkdir -p $(@D)
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(REQUIRED) $(WARNINGS) -O1 -fPIC -shared -o $@ $< -ldl
-faults: all
+faults-build: all
 	$(Q)$(MAKE) --no-print-directory $(BUILD)/tests/faults $(BUILD)/tests/fault_shim.so
-	$(Q)$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="-O1 -g" SANITIZE=address,undefined $(BUILD)/asan/tests/faults
+	$(Q)$(MAKE) --no-print-directory BUILD=$(FAULTS_ASAN) CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow $(FAULTS_ASAN)/tests/faults
 	$(Q)$(MAKE) --no-print-directory BUILD=$(BUILD)/tsan CFLAGS="-O1 -g" SANITIZE=thread $(BUILD)/tsan/tests/faults
-	$(Q)tests/faults.sh $(BUILD) $(FAULTS_FLAGS)
+faults: faults-build
+	$(Q)tests/faults.sh $(BUILD) $(FAULTS_ASAN) $(FAULTS_FLAGS)
 
 # Coverage-guided fuzzing (clang): `make fuzz FUZZ_SECONDS=600` spends that much on each target.
 FUZZ_SECONDS ?= 60
@@ -184,8 +188,9 @@ $(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz_%.o $(BUILD)/tests/archive_walk.o $(B
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) $(BUILD)/internal.a $(TOOL_LIBS) $(LIBRARY_LIBS)
 endif
-fuzz:
+fuzz-build:
 	$(Q)$(MAKE) --no-print-directory BUILD=$(FUZZ_BUILD) CC=clang CFLAGS="-O1 -g" SANITIZE=fuzzer-no-link,address,undefined $(FUZZ_TARGETS:%=$(FUZZ_BUILD)/tests/fuzz_%)
+fuzz: fuzz-build
 	$(Q)tests/fuzz.sh $(FUZZ_BUILD) $(FUZZ_SECONDS)
 
 # Run time against error: `make bench BENCH_DATA=FOLDER BENCH_LABEL="what it is"`; without BENCH_DATA the demo set.
@@ -254,5 +259,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults fuzz install uninstall clean FORCE
+.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults faults-build fuzz fuzz-build install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

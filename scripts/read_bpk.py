@@ -536,15 +536,13 @@ class Planes:
 
     def sums(self, b, y, x):
         """k itself, around, along, others and parent of a cell."""
-        f, m, p, band, known = self.f, self.m, self.plane, self.bands[b], self.known
-
-        def k(dy=0, dx=0, dm=0):
-            return known.get((f, m + dm, b, y + dy, x + dx), 0)
-        around = 2 * (k(0, -1) + k(0, 1) + k(-1) + k(1)) + k(-1, -1) + k(-1, 1) + k(1, -1) + k(1, 1) >> p
-        along = 2 * (k(dm=-2) + k(dm=2)) + k(dm=-1) + k(dm=1) >> p
-        others = sum(known.get((g, m, b, y, x), 0) for g in range(3) if g != f) >> p
-        parent = known.get((f, m, band.parent, y >> band.shift, x >> band.shift), 0) >> p if b else 0
-        return k(), around, along, others, parent
+        f, m, p, band, k = self.f, self.m, self.plane, self.bands[b], self.known.get
+        around = (2 * (k((f, m, b, y, x - 1), 0) + k((f, m, b, y, x + 1), 0) + k((f, m, b, y - 1, x), 0) + k((f, m, b, y + 1, x), 0)) +
+                  k((f, m, b, y - 1, x - 1), 0) + k((f, m, b, y - 1, x + 1), 0) + k((f, m, b, y + 1, x - 1), 0) + k((f, m, b, y + 1, x + 1), 0)) >> p
+        along = 2 * (k((f, m - 2, b, y, x), 0) + k((f, m + 2, b, y, x), 0)) + k((f, m - 1, b, y, x), 0) + k((f, m + 1, b, y, x), 0) >> p
+        others = k(((f + 1) % 3, m, b, y, x), 0) + k(((f + 2) % 3, m, b, y, x), 0) >> p
+        parent = k((f, m, band.parent, y >> band.shift, x >> band.shift), 0) >> p if b else 0
+        return k((f, m, b, y, x), 0), around, along, others, parent
 
     def row(self, b, y, xs, fresh):
         if any(any(self.sums(b, y, x)) for x in xs):

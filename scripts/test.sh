@@ -15,17 +15,18 @@
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
 #     fuzz      each fuzz target for some seconds
 #
-# Without a JOB: all of them. The last line is "N passed, M failed"; the exit code is 1 when M > 0.
+# Without a JOB: all of them. First everything they need is built, then the jobs run, as many at once as there are
+# cores, each printing what it has to say when it ends. The last line is "N passed, M failed"; the exit code is 1 when M > 0.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
-all_jobs="unit cli install python asan clang valgrind stress faults bench fuzz"
-jobs=${*:-$all_jobs}
+# in the order they start: the longest first
+all_jobs="asan faults fuzz python stress unit cli bench install valgrind clang"
 logs=build/logs
 passed=0
 failed=0
 
-for job in $jobs; do
+for job in "$@"; do
 	case " $all_jobs " in
 	*" $job "*) ;;
 	*)
@@ -34,43 +35,72 @@ for job in $jobs; do
 		;;
 	esac
 done
+jobs=""
+for job in $all_jobs; do
+	if [ $# = 0 ] || [[ " $* " == *" $job "* ]]; then jobs+=" $job"; fi
+done
+# does any of these jobs run?
+wanted() {
+	local job
+	for job in "$@"; do [[ "$jobs " != *" $job "* ]] || return 0; done
+	return 1
+}
 
 groups="build test"
-case " $jobs " in *" asan "* | *" clang "* | *" valgrind "* | *" faults "* | *" fuzz "*) groups+=" slow" ;; esac
+if wanted asan clang valgrind faults fuzz; then groups+=" slow"; fi
 # shellcheck disable=SC2086
 scripts/setup.sh $groups || exit 1
-mkdir -p "$logs"
-parallel=$(nproc)
+rm -rf "$logs" && mkdir -p "$logs"
+cores=$(nproc)
+lanes=$(wc -w <<<"$jobs")
+[ "$lanes" -le "$cores" ] || lanes=$cores
+width=$((cores / lanes)) # the cores that a job may use
 
-# One check: check NAME LOG COMMAND...; on failure the end of its log is shown.
-check() {
-	local name=$1 log=$2
-	shift 2
-	if "$@" >"$log" 2>&1; then
+# Runs make and keeps what came of it for the jobs: prepare NAME MAKE-ARGUMENT...
+# One folder after another: each takes all cores, and make must not read what another one is writing.
+prepare() {
+	local name=$1
+	shift
+	make -s -j"$cores" "$@" >"$logs/make-$name.log" 2>&1
+	echo $? >"$logs/make-$name.code"
+}
+
+# Counts one check: count NAME LOG CODE; when it failed the end of its log is shown.
+count() {
+	if [ "$3" = 0 ]; then
 		passed=$((passed + 1))
 	else
 		failed=$((failed + 1))
-		echo "FAILED: $name (log: $log)"
-		tail -n 30 "$log" | sed 's/^/    /'
+		echo "FAILED: $1 (log: $2)"
+		tail -n 30 "$2" | sed 's/^/    /'
 		return 1
 	fi
 }
 
-# Builds into build/$1 with the make variables that follow; counts as one check.
-build() {
-	local folder=$1
-	shift
-	check "build $folder" "$logs/make-$folder.log" make -s -j"$parallel" BUILD="build/$folder" "$@" all tests
+# One check: check NAME LOG COMMAND...
+check() {
+	local name=$1 log=$2
+	shift 2
+	"$@" >"$log" 2>&1
+	count "$name" "$log" $?
 }
+
+# What prepare NAME made, as one check.
+build() { count "build $1" "$logs/make-$1.log" "$(cat "$logs/make-$1.code")"; }
 
 # Runs the cmocka programs of build/$1 and counts their tests.
 unit_tests() {
 	local program log ok bad code
+	local -a programs=()
 	for program in build/"$1"/tests/test_*; do
-		if [ ! -f "$program" ] || [ ! -x "$program" ]; then continue; fi
+		if [ -f "$program" ] && [ -x "$program" ]; then programs+=("$program"); fi
+	done
+	# shellcheck disable=SC2016
+	printf '%s\n' "${programs[@]}" | xargs -P "$width" -I '{}' sh -c \
+		'timeout 300 "$2" >"$1-${2##*/}.log" 2>&1; echo $? >"$1-${2##*/}.code"' sh "$logs/$1" '{}'
+	for program in "${programs[@]}"; do
 		log=$logs/$1-$(basename "$program").log
-		timeout 300 "$program" >"$log" 2>&1
-		code=$?
+		code=$(cat "${log%.log}.code" 2>/dev/null || echo lost)
 		ok=$(grep -c '^\[       OK' "$log")
 		bad=$(grep -c '^\[  FAILED  \] [a-zA-Z_0-9]*$' "$log")
 		# the list at the end names each failed test once more
@@ -88,7 +118,7 @@ unit_tests() {
 # Runs tests/cli with the tool of build/$1 and adds its totals.
 cli_tests() {
 	local log=$logs/cli-$1.log line
-	BRDFPACK=$PWD/build/$1/brdfpack timeout 500 tests/cli/run >"$log" 2>&1
+	BRDFPACK=$PWD/build/$1/brdfpack timeout 900 tests/cli/run >"$log" 2>&1
 	line=$(tail -n 1 "$log")
 	if [[ $line =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed ]]; then
 		passed=$((passed + BASH_REMATCH[1]))
@@ -101,42 +131,75 @@ cli_tests() {
 	fi
 }
 
-job_unit() { build test CFLAGS="-O3 -g -Werror" && unit_tests test; }
-job_cli() { build test CFLAGS="-O3 -g -Werror" && cli_tests test; }
-# no -Werror: what the sanitizers insert makes gcc warn of things that are not there
+job_unit() { build test && unit_tests test; }
+job_cli() { build test && cli_tests test; }
 job_asan() {
 	export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1
-	build asan CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow && unit_tests asan && cli_tests asan
+	build asan && unit_tests asan && cli_tests asan
 }
-job_clang() { build clang CC=clang CFLAGS="-O2 -g -Werror"; }
-job_install() { build test CFLAGS="-O3 -g -Werror" && check "installed library" "$logs/install.log" tests/install.sh build/test; }
+job_clang() { build clang; }
+job_install() { build test && check "installed library" "$logs/install.log" tests/install.sh build/test "${test_flags[@]}"; }
 job_python() {
-	build test CFLAGS="-O3 -g -Werror" || return
+	build test || return
 	check "python reader, vectors" "$logs/python-vectors.log" tests/python_reader.sh build/test
 	check "python reader, demo set" "$logs/python-demo.log" tests/python.sh build/test
 }
-job_valgrind() { build test CFLAGS="-O3 -g -Werror" && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }
-job_stress() {
-	build test CFLAGS="-O3 -g -Werror" || return
-	check "stress" "$logs/stress.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" STRESS_FLAGS="-g 2 -q -v" stress
-}
-job_faults() {
-	build test CFLAGS="-O3 -g -Werror" || return
-	check "faults" "$logs/faults.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" faults
-}
+job_valgrind() { build test && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }
+job_stress() { build test && check "stress" "$logs/stress.log" make -s "${test_build[@]}" STRESS_FLAGS="-g 2 -q -v" stress; }
+job_faults() { build test && check "faults" "$logs/faults.log" make -s "${test_build[@]}" faults; }
 job_bench() {
-	build test CFLAGS="-O3 -g -Werror" || return
-	check "benchmark program" "$logs/bench-make.log" make -s BUILD=build/test CFLAGS="-O3 -g -Werror" build/test/bench/brdfpack-bench &&
-		check "benchmarks" "$logs/bench.log" tests/bench.sh build/test
+	build test || return
+	build bench && check "benchmarks" "$logs/bench.log" tests/bench.sh build/test
 }
-job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s -j"$parallel" BUILD=build/test CFLAGS="-O3 -g -Werror" FUZZ_SECONDS=12 fuzz; }
+job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECONDS=12 fuzz; }
 
+test_flags=(CFLAGS="-O3 -g -Werror")
+test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
+start=$SECONDS
+if wanted unit cli install python valgrind stress faults bench; then prepare test "${test_build[@]}" all tests; fi
+if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
+if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi
+# no -Werror: what the sanitizers insert makes gcc warn of things that are not there
+if wanted asan; then prepare asan BUILD=build/asan CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow all tests; fi
+if wanted clang; then prepare clang BUILD=build/clang CC=clang CFLAGS="-O2 -g -Werror" all tests; fi
+if wanted faults; then prepare faults "${test_build[@]}" faults-build; fi
+if wanted fuzz; then prepare fuzz "${test_build[@]}" fuzz-build; fi
+echo "built in $((SECONDS - start)) s"
+
+run() {
+	local start=$SECONDS
+	passed=0
+	failed=0
+	"job_$1"
+	echo "$1: $passed passed, $failed failed, $((SECONDS - start)) s"
+}
+
+# Waits for one of the running jobs, prints what it said and adds its totals.
+collect() {
+	local pid job line
+	wait -n -p pid "${!running[@]}"
+	job=${running[$pid]}
+	unset "running[$pid]"
+	cat "$logs/job-$job.log"
+	line=$(tail -n 1 "$logs/job-$job.log")
+	if [[ $line =~ ^$job:\ ([0-9]+)\ passed,\ ([0-9]+)\ failed ]]; then
+		passed=$((passed + BASH_REMATCH[1]))
+		failed=$((failed + BASH_REMATCH[2]))
+	else
+		failed=$((failed + 1))
+		echo "FAILED: job $job ended early"
+	fi
+}
+
+# Process groups of their own: jobs do not ignore SIGINT, which tests send, and can be ended together.
+set -m
+declare -A running=()
+trap 'for pid in "${!running[@]}"; do kill -- "-$pid"; done; exit 130' INT TERM
 for job in $jobs; do
-	before=$passed
-	start=$SECONDS
-	broken=$failed
-	"job_$job"
-	echo "$job: $((passed - before)) passed, $((failed - broken)) failed, $((SECONDS - start)) s"
+	[ ${#running[@]} -lt "$lanes" ] || collect
+	run "$job" </dev/null >"$logs/job-$job.log" 2>&1 &
+	running[$!]=$job
 done
+while [ ${#running[@]} -gt 0 ]; do collect; done
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -136,7 +136,7 @@ def kills(place, count):
             fault(kind + ": the build hangs")
             build.kill()
             code = build.wait()
-        deadline = time.time() + 5
+        deadline = time.time() + 30
         while any(alive(pid) for pid in workers) and time.time() < deadline:
             time.sleep(0.01)
         if any(alive(pid) for pid in workers):

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Faults survived: tests/faults.sh BUILD [--long]. BUILD holds brdfpack, tests/faults and the same with sanitizers in asan/, tsan/.
+# Faults survived: tests/faults.sh BUILD ASAN [--long]. BUILD holds brdfpack, tests/faults and tsan/tests/faults, ASAN tests/faults.
 set -euo pipefail
 build=$PWD/$1
-long=${2:-}
+asan=$PWD/$2
+long=${3:-}
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -24,10 +25,10 @@ done
 "$build/brdfpack" build --any-lattice -q -o many.bpk many
 [ -n "$long" ] && mutations=100000 loads=10000 || mutations=3000 loads=10000
 for profile in paper default; do
-	"$build/asan/tests/faults" truncate few-$profile.bpk
-	"$build/asan/tests/faults" flip few-$profile.bpk
+	"$asan/tests/faults" truncate few-$profile.bpk
+	"$asan/tests/faults" flip few-$profile.bpk
 done
-"$build/asan/tests/faults" mutate many.bpk "$mutations"
+"$asan/tests/faults" mutate many.bpk "$mutations"
 "$build/tests/faults" load many.bpk "$loads"
 "$build/tsan/tests/faults" threads many.bpk 100
 # shellcheck disable=SC2086

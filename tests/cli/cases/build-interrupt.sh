@@ -17,7 +17,7 @@ for number in (signal.SIGINT, signal.SIGTERM):
         os.killpg(build.pid, number)   # as a terminal does: to everyone
     else:
         build.send_signal(number)
-    print("exit", build.wait(timeout=5))
+    print("exit", build.wait(timeout=30))
     print("workers left:", sum(os.path.exists("/proc/" + child) for child in children))
 END
 python3 interrupt.py

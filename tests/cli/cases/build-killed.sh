@@ -19,7 +19,7 @@ def gone(pid):
 build, children = start("10", "out.bpk")
 build.kill()
 build.wait()
-for _ in range(200):
+for _ in range(2000):
     if all(map(gone, children)):
         break
     time.sleep(0.01)
