@@ -259,11 +259,6 @@ static void check_generations(const struct trial *trial, const struct packed_tab
 {
 	struct lattice next = {0};
 	packed_to_lattice(base, form, &next);
-	if (form == DECODED_FILE && !next.carried) {
-		lattice_free(&next);
-		return;
-	}
-	trial->figures->carried += form == DECODED_FILE;
 	struct lattice original = above_horizon(trial, &next);
 	struct packed_table packed = {.status = BP_OK};
 	struct fidelity figures;
@@ -284,6 +279,11 @@ static void check_generations(const struct trial *trial, const struct packed_tab
 			note(trial, g == 1 ? once : (enum property)(once + 1), 20 * log10(fmax(1e-3, figures.log_rmse) / first));
 		packed_to_lattice(&packed, form, &next);
 		packed_free(&packed);
+		if (g == 0 && form == DECODED_FILE) {
+			if (!next.carried)
+				break;
+			trial->figures->carried++;
+		}
 	}
 	lattice_free(&next);
 	lattice_free(&original);
