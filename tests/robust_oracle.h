@@ -152,4 +152,25 @@ ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n)
 	return slow_fit_shaken(x, y, n, 0, NULL);
 }
 
+/*
+ * How far a line is from the oracle's at either end of x, relative to the larger of that one's values there: where x is
+ * constant only the line's value counts, not its coefficients. Infinite for a line that is not finite.
+ */
+ORACLE double oracle_deviation(double intercept, double slope, const struct oracle *want, const double *x, size_t n)
+{
+	double low = x[0], high = x[0], worst = 0;
+	if (!isfinite(intercept) || !isfinite(slope))
+		return INFINITY;
+	for (size_t i = 0; i < n; i++) {
+		low = fmin(low, x[i]);
+		high = fmax(high, x[i]);
+	}
+	const double size = fmax(fabs(want->intercept + want->slope * low), fabs(want->intercept + want->slope * high));
+	for (int end = 0; end < 2; end++) {
+		const double at = end ? high : low;
+		worst = fmax(worst, fabs((intercept - want->intercept) + (slope - want->slope) * at) / size);
+	}
+	return worst;
+}
+
 #endif

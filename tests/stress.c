@@ -304,23 +304,6 @@ static void check_recorded(const struct trial *trial, const struct packed_table 
 }
 
 /*
- * The two lines at both ends of x, relative to the larger of the line's values there: where x is constant only the
- * line's value counts, not its coefficients.
- */
-static double line_deviation(double intercept, double slope, const struct oracle *oracle, const double *x, size_t n)
-{
-	double low = x[0], high = x[0];
-	for (size_t i = 0; i < n; i++) {
-		low = fmin(low, x[i]);
-		high = fmax(high, x[i]);
-	}
-	const double ours[2] = {intercept + slope * low, intercept + slope * high};
-	const double theirs[2] = {oracle->intercept + oracle->slope * low, oracle->intercept + oracle->slope * high};
-	const double size = fmax(fabs(theirs[0]), fabs(theirs[1]));
-	return fmax(relative_deviation(ours[0], theirs[0], size), relative_deviation(ours[1], theirs[1], size));
-}
-
-/*
  * A deviation of two regressions as it counts: 1e-12 may always be; what is more, over what the data's condition explains.
  * `units`: rounding errors act as if each observation were moved by so many half units of its last place. How far the line
  * then moves is tried in long double; four times the most of four trials may be, since rounding errors need not be as random.
@@ -335,10 +318,11 @@ static double deviation_counted(double deviation, double units, bool same_stop, 
 		return deviation;
 	for (int trial = 0; trial < 4; trial++) {
 		const struct oracle shaken = slow_fit_shaken(x, y, n, (long double)units * 0x1p-53L, &random);
-		moved = fmax(moved, line_deviation(shaken.intercept, shaken.slope, slow, x, n)); /* NaN counts for nothing */
+		if (isfinite(shaken.slope))
+			moved = fmax(moved, oracle_deviation(shaken.intercept, shaken.slope, slow, x, n));
 	}
 	if (!same_stop)
-		moved += line_deviation(slow->intercept - slow->step[0], slow->slope - slow->step[1], slow, x, n);
+		moved += oracle_deviation(slow->intercept - slow->step[0], slow->slope - slow->step[1], slow, x, n);
 	if (verbose)
 		fprintf(stderr, "a regression deviates by %.3g where %.3g may be\n", deviation, 4 * moved);
 	return deviation * fmin(1, 1e-12 / (4 * moved));
@@ -374,12 +358,12 @@ static void check_regression(const struct trial *trial)
 			continue; /* GSL fails silently: on a constant x, and on squares beyond the range of double */
 		const struct oracle slow = slow_fit(x, y, n), gsl = gsl_fit(x, y, n);
 		if (!slow.status && isfinite(slow.slope)) {
-			const double deviation = line_deviation(fit.intercept, fit.slope, &slow, x, n);
+			const double deviation = oracle_deviation(fit.intercept, fit.slope, &slow, x, n);
 			note(trial, REGRESSION, deviation_counted(deviation, 1, fit.iterations == slow.iterations, &slow, x, y, n));
 		}
 		/* Where the remaining weights leave a constant x, no line is determined, and the slow reference gives NaN. */
 		if (gsl.status == GSL_SUCCESS && isfinite(gsl.slope) && isfinite(slow.slope)) {
-			const double deviation = line_deviation(fit.intercept, fit.slope, &gsl, x, n);
+			const double deviation = oracle_deviation(fit.intercept, fit.slope, &gsl, x, n);
 			/* GSL adds plainly: a sum of n terms errs by up to n half units. */
 			note(trial, GSL, deviation_counted(deviation, (double)n, gsl.iterations == slow.iterations, &slow, x, y, n));
 		}

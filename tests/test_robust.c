@@ -231,22 +231,6 @@ static void weights_that_leave_a_constant_x_keep_the_line_in_bounds(void **user)
 	}
 }
 
-/* The larger deviation of two lines at both ends of x, relative to the second line's larger value. */
-static double line_deviation(double intercept, double slope, const struct oracle *want, const double *x, size_t n)
-{
-	double low = x[0], high = x[0], worst = 0;
-	for (size_t i = 0; i < n; i++) {
-		low = fmin(low, x[i]);
-		high = fmax(high, x[i]);
-	}
-	const double size = fmax(fabs(want->intercept + want->slope * low), fabs(want->intercept + want->slope * high));
-	for (int end = 0; end < 2; end++) {
-		const double at = end ? high : low;
-		worst = fmax(worst, fabs((intercept - want->intercept) + (slope - want->slope) * at) / size);
-	}
-	return worst;
-}
-
 /*
  * Nearly all of x is within 1e-5 of 20, in steps of single precision, and what decides the slope is what little differs there:
  * the iterations arrive from bright observations far away, and the residuals become 1e-10 of the values.
@@ -272,13 +256,14 @@ static void a_crowd_far_from_zero_is_fitted_to_the_last_digits(void **user)
 			assert_int_equal(robust_fit(xs, ys, CELLS, &fit, NULL), BP_OK);
 			const struct oracle slow = slow_fit(xs, ys, CELLS);
 			uint64_t random = seed;
-			double moved = 0; /* by half a unit of the observations' last places */
+			double moved = 0; /* the line, by half a unit of the observations' last places */
 			for (int trial = 0; trial < 4; trial++) {
 				const struct oracle shaken = slow_fit_shaken(xs, ys, CELLS, 0x1p-53L, &random);
-				moved = fmax(moved, line_deviation(shaken.intercept, shaken.slope, &slow, xs, CELLS));
+				if (isfinite(shaken.slope))
+					moved = fmax(moved, oracle_deviation(shaken.intercept, shaken.slope, &slow, xs, CELLS));
 			}
 			if (!slow.status && isfinite(slow.slope)) /* where only one x is left, nothing determines a line */
-				worst = fmax(worst, line_deviation(fit.intercept, fit.slope, &slow, xs, CELLS) / fmax(1e-14, 4 * moved));
+				worst = fmax(worst, oracle_deviation(fit.intercept, fit.slope, &slow, xs, CELLS) / fmax(1e-14, 4 * moved));
 		}
 	}
 	assert_true(worst <= 1);
@@ -304,9 +289,9 @@ static void an_intercept_of_next_to_nothing_does_not_end_the_iterations_early(vo
 		assert_int_equal(robust_fit(xs, ys, n, &fit, NULL), BP_OK);
 		const struct oracle slow = slow_fit(xs, ys, n);
 		/* The reference itself still moves where it stops. */
-		const double step = line_deviation(slow.intercept - slow.step[0], slow.slope - slow.step[1], &slow, xs, n);
+		const double step = oracle_deviation(slow.intercept - slow.step[0], slow.slope - slow.step[1], &slow, xs, n);
 		if (!slow.status && isfinite(slow.slope))
-			worst = fmax(worst, line_deviation(fit.intercept, fit.slope, &slow, xs, n) - (fit.iterations == slow.iterations ? 0 : 4 * step));
+			worst = fmax(worst, oracle_deviation(fit.intercept, fit.slope, &slow, xs, n) - (fit.iterations == slow.iterations ? 0 : 4 * step));
 	}
 	assert_true(worst <= 1e-12);
 }
