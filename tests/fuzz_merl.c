@@ -37,10 +37,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 				abort();
 	for (int p = PROFILE_PAPER; p <= PROFILE_DEFAULT; p++) {
 		const struct fit_options options = {(enum profile)p, 60400, 0, 5};
-		const struct record_source source = {0};
 		uint8_t *record;
 		size_t bytes;
-		if (record_carried(&lattice, "m", &source, &options, &record, &bytes, NULL) == BP_OK)
+		if (record_carried(&lattice, "m", &options, &record, &bytes, NULL) == BP_OK)
 			free(record);
 	}
 	lattice_free(&lattice);

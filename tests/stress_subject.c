@@ -18,7 +18,7 @@ void packed_make(const struct lattice *lattice, const char *name, const struct f
 	struct model *model = NULL;
 
 	memset(out, 0, sizeof *out);
-	out->status = record_carried(lattice, name, &source, options, &out->record, &out->record_bytes, NULL);
+	out->status = record_carried(lattice, name, options, &out->record, &out->record_bytes, NULL);
 	if (!out->status && !out->record)
 		out->status = record_pack(lattice, name, &source, options, &out->record, &out->record_bytes, NULL, NULL);
 	if (!out->status)

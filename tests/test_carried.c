@@ -33,7 +33,7 @@ static void what_was_written_is_found_among_measured_values(void **state)
 	(void)state;
 	static const size_t counts[] = {1, 5, 6, 7, 300, 588};
 	for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
-		struct carried_reader reader = {0};
+		struct carried_reader reader = {.values = 3 * VALUES};
 		uint8_t bytes[588];
 		double values[VALUES], file[3 * VALUES];
 		bytes_make(bytes, counts[k]);
@@ -46,7 +46,7 @@ static void what_was_written_is_found_among_measured_values(void **state)
 			file[3 * n + 2] = 1.0;
 		}
 		for (size_t at = 0; at < 3 * VALUES; at += 25) /* in portions, as files are read */
-			carried_find(&reader, file + at, 25);
+			assert_true(carried_find(&reader, file + at, 25));
 		assert_true(reader.whole);
 		assert_int_equal(reader.count, counts[k]);
 		assert_memory_equal(reader.bytes, bytes, counts[k]);
@@ -82,8 +82,8 @@ static void room_is_six_bytes_to_a_value_less_twelve(void **state)
 /* The values of a file as they are, with nothing found in it. */
 static void nothing_found(const double *values, size_t count)
 {
-	struct carried_reader reader = {0};
-	carried_find(&reader, values, count);
+	struct carried_reader reader = {.values = count};
+	assert_true(carried_find(&reader, values, count));
 	assert_false(reader.whole);
 	free(reader.bytes);
 }
@@ -103,6 +103,13 @@ static void other_files_carry_nothing(void **state)
 	nothing_found(values, VALUES);
 }
 
+/* Another number of bytes in the head. */
+static void announce(double values[VALUES], uint64_t count)
+{
+	const uint64_t bits = (uint64_t)0xBFF0 << 48 | count << 16 | '\n' << 8 | 0x1A;
+	memcpy(&values[1], &bits, sizeof bits);
+}
+
 static void a_file_that_lost_some_of_it_carries_nothing(void **state)
 {
 	(void)state;
@@ -114,10 +121,19 @@ static void a_file_that_lost_some_of_it_carries_nothing(void **state)
 	values[0] = (double)(float)values[0]; /* through single precision */
 	nothing_found(values, VALUES);
 	values_make(bytes, 300, values);
-	values[1] = -1; /* announces 0 bytes */
+	announce(values, 0);
 	nothing_found(values, VALUES);
-	values[1] = -1.0624999; /* announces more than any record has */
+	announce(values, 589); /* a byte more than so many values can hold: nothing is allocated for it */
 	nothing_found(values, VALUES);
+	announce(values, UINT32_MAX);
+	nothing_found(values, VALUES);
+	announce(values, 588); /* and this the file could hold, but it ends before */
+	nothing_found(values, VALUES - 1);
+	announce(values, 300);
+	struct carried_reader reader = {.values = VALUES};
+	assert_true(carried_find(&reader, values, VALUES));
+	assert_true(reader.whole);
+	free(reader.bytes);
 }
 
 int main(void)

@@ -121,5 +121,7 @@ bp_status record_decode_whole(const struct record_head *head, uint32_t layers, c
  */
 bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layers, uint8_t **out, size_t *out_bytes,
                              bp_error *error);
+/* Copies a record, all of it, under another name. A name that is not legal is BP_ERROR_ARGUMENT. */
+bp_status record_rename(const uint8_t *record, size_t count, const char *name, uint8_t **out, size_t *out_bytes, bp_error *error);
 
 #endif

@@ -12,12 +12,17 @@
 #include "record.h"
 
 /*
- * The record that the lattice carries, with this name and source, these options, and the errors against this very table, which are
- * rounding errors: *record is malloc'ed. It is NULL where there is none to keep: nothing is carried or it is damaged, it does not
- * decode to exactly this lattice, it is of another profile, it does not fit options->budget_bytes, or another max_error is asked for
- * (a smaller record might do then).
+ * The record that the lattice carries, byte for byte but for the name: source, options and errors stay those of the measured
+ * file that it was made from. *record is malloc'ed, or NULL where the lattice has to be fitted, because
+ *
+ * - nothing is carried, or the record is damaged, or one of its layers does not decode;
+ * - it does not decode to this lattice: the same cells valid, the same values to the bit as they are read;
+ * - it is of another profile than options->profile, or larger than options->budget_bytes;
+ * - with options->max_error > 0, which lets the budget not count: it was not made for that very bound. A smaller record might do.
+ *
+ * Fails only where memory runs out.
  */
-bp_status record_carried(const struct lattice *lattice, const char *name, const struct record_source *source,
-                         const struct fit_options *options, uint8_t **record, size_t *record_bytes, bp_error *error);
+bp_status record_carried(const struct lattice *lattice, const char *name, const struct fit_options *options, uint8_t **record,
+                         size_t *record_bytes, bp_error *error);
 
 #endif

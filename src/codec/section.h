@@ -28,10 +28,4 @@ void section_list_free(struct section_list *list);
 bp_status record_write(struct record_head *head, const struct section_list *sections, uint8_t **record, size_t *record_bytes,
                        bp_error *error);
 
-/*
- * The way back: adds the sections of a whole record's layers 0..layers-1 to an empty list, byte for byte; their checksums
- * are checked. The caller frees the list in any case.
- */
-bp_status record_sections(const uint8_t *record, const struct record_head *head, uint32_t layers, struct section_list *out, bp_error *error);
-
 #endif

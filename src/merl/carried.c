@@ -36,16 +36,18 @@ double carried_next(struct carried_writer *writer)
 }
 
 /* The head is there: is it one? */
-static void head_read(struct carried_reader *reader)
+static bool head_read(struct carried_reader *reader)
 {
 	for (size_t n = 0; n < HEAD_BYTES - sizeof MAGIC; n++)
 		reader->count |= (size_t)reader->head[sizeof MAGIC + n] << 8 * n;
-	if (!memcmp(reader->head, MAGIC, sizeof MAGIC) && reader->count > 0 && reader->count <= CARRIED_BYTES_MAX)
-		reader->bytes = malloc(reader->count);
-	reader->ended = !reader->bytes;
+	reader->ended = memcmp(reader->head, MAGIC, sizeof MAGIC) != 0 || reader->count == 0 || !carried_fits(reader->count, reader->values);
+	if (reader->ended)
+		return true;
+	reader->bytes = malloc(reader->count);
+	return reader->bytes != NULL;
 }
 
-static void value_read(struct carried_reader *reader, uint64_t bits)
+static bool value_read(struct carried_reader *reader, uint64_t bits)
 {
 	for (size_t n = 0; n < VALUE_BYTES && !reader->whole; n++, reader->at++) {
 		const uint8_t byte = (uint8_t)(bits >> 8 * n);
@@ -55,17 +57,17 @@ static void value_read(struct carried_reader *reader, uint64_t bits)
 			reader->bytes[reader->at - HEAD_BYTES] = byte;
 		reader->whole = reader->bytes && reader->at + 1 == HEAD_BYTES + reader->count;
 	}
-	if (reader->at == HEAD_BYTES)
-		head_read(reader);
-	reader->ended |= reader->whole;
+	reader->ended = reader->whole;
+	return reader->at != HEAD_BYTES || head_read(reader);
 }
 
-void carried_find(struct carried_reader *reader, const double *values, size_t count)
+bool carried_find(struct carried_reader *reader, const double *values, size_t count)
 {
 	for (size_t n = 0; n < count && !reader->ended; n++) {
 		uint64_t bits;
 		memcpy(&bits, &values[n], sizeof bits);
-		if (bits >> SIGNATURE_SHIFT == SIGNATURE)
-			value_read(reader, bits);
+		if (bits >> SIGNATURE_SHIFT == SIGNATURE && !value_read(reader, bits))
+			return false;
 	}
+	return true;
 }

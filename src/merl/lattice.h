@@ -86,7 +86,7 @@ void lattice_scan_finish(struct lattice *lattice);
 void quarter_cos_sin(double t, double *cosine, double *sine);
 
 /*
- * The horizon: which cells extraction writes as -1.
+ * The horizon: which cells extraction writes as negative values.
  *
  * A cell is *below the horizon* when all of it is (the smaller cosine nowhere exceeds 0; it falls
  * with theta_h and theta_d and rises towards phi_d = pi/2), and the smaller cosine at the cell's

@@ -92,7 +92,8 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, struct c
 				return status;
 			if (got < count * sizeof *values)
 				return truncated(expected, in->done, error);
-			carried_find(carried, values, count);
+			if (!carried_find(carried, values, count))
+				return error_memory(error, carried->count);
 			lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start);
 		}
 	char extra;
@@ -125,6 +126,7 @@ static bp_status input_read(struct input *in, bool any_dims, uint64_t available,
 	status = lattice_alloc(dims, &lattice, error);
 	if (status != BP_OK)
 		return status;
+	carried.values = 3 * lattice_cells(dims);
 	status = planes_read(in, &lattice, &carried, error);
 	if (status != BP_OK || !carried.whole) {
 		free(carried.bytes);

@@ -38,7 +38,7 @@ bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_use
 bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, const uint8_t *carried,
                              size_t carried_bytes, bp_error *error);
 
-/* Whether the lattice, of the table's extents, is what reading such a file gives: the same cells valid, the same values to the bit. */
+/* Whether the lattice, of the table's extents, is what reading such a file gives: the same cells valid, the same values (1/sr) to the bit. */
 bool lattice_is_written(const struct lattice *lattice, const struct expansion *table, const uint8_t *below);
 
 /*

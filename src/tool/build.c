@@ -53,16 +53,23 @@ static void outcomes_report(struct build *build)
 	}
 }
 
-/* Checks a record that a worker made, and the file it was made from against the manifest. */
-static bp_status record_accept(struct build *build, struct item *item, const struct job_result *result,
-                               struct record_head *head, bp_error *error)
+/* Checks what a worker delivered, and the file it was made from against the manifest. */
+static bp_status delivery_accept(struct build *build, struct item *item, const struct job_result *result, struct outcome *outcome,
+                                 bp_error *error)
 {
-	bp_status status = record_head_parse(result->record, result->record_bytes, head, error);
-	if (!status && (head->record_bytes != result->record_bytes || strcmp(head->name, item->source.name) != 0))
+	struct delivery delivery;
+	if (result->record_bytes < sizeof delivery)
+		return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered no record");
+	const size_t record_bytes = result->record_bytes - sizeof delivery;
+	memcpy(&delivery, result->record, sizeof delivery);
+	bp_status status = record_head_parse(result->record + sizeof delivery, record_bytes, &outcome->head, error);
+	if (!status && (outcome->head.record_bytes != record_bytes || strcmp(outcome->head.name, item->source.name) != 0))
 		status = error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered a damaged record");
 	const struct manifest_entry *entry = manifest_find(&build->manifest, item->source.name);
 	if (!status && entry)
-		status = manifest_check(entry, head->source.bytes, head->source.sha256, error);
+		status = manifest_check(entry, delivery.source.bytes, delivery.source.sha256, error);
+	outcome->source = delivery.source;
+	outcome->origin = delivery.origin;
 	return status;
 }
 
@@ -75,7 +82,9 @@ static void outcome_take(struct build *build, struct item *item, struct outcome 
 	} else {
 		item->state = ITEM_PACKED;
 		build->totals.packed++;
-		build->totals.source_bytes += outcome->head.source.bytes;
+		build->totals.reused += outcome->origin == RECORD_REUSED;
+		build->totals.kept += outcome->origin == RECORD_KEPT;
+		build->totals.source_bytes += outcome->source.bytes;
 	}
 	build->bytes_done += item->source.bytes != UINT64_MAX ? item->source.bytes : merl_file_bytes(LATTICE_MERL);
 	item->outcome = outcome;
@@ -118,14 +127,15 @@ static void result_take(void *user, const struct job_result *result)
 	memcpy(outcome->stage_seconds, result->stage_seconds, sizeof outcome->stage_seconds);
 	outcome->error = result->error;
 	if (!outcome->error.status)
-		record_accept(build, item, result, &outcome->head, &outcome->error);
+		delivery_accept(build, item, result, outcome, &outcome->error);
 	if (!outcome->error.status) {
-		if (spool_add(&build->spool, result->record, result->record_bytes, &item->spool_offset, &error)) {
+		const uint8_t *record = result->record + sizeof(struct delivery);
+		if (spool_add(&build->spool, record, outcome->head.record_bytes, &item->spool_offset, &error)) {
 			free(outcome);
 			build_stop(build, build->options->output, NULL, &error);
 			return;
 		}
-		item->record_bytes = (uint32_t)result->record_bytes;
+		item->record_bytes = outcome->head.record_bytes;
 	}
 	outcome_take(build, item, outcome);
 }
@@ -229,24 +239,6 @@ static bp_status previous_open(struct build *build, bp_error *error)
 	return bp_archive_open(build->options->output, &build->previous, error);
 }
 
-static bp_status counts_open(struct build *build, bp_error *error)
-{
-	void *shared = mmap(NULL, sizeof *build->counts, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-	if (shared == MAP_FAILED)
-		return error_memory(error, sizeof *build->counts);
-	build->counts = shared;
-	return BP_OK;
-}
-
-static void counts_close(struct build *build)
-{
-	if (!build->counts)
-		return;
-	build->totals.reused = __atomic_load_n(&build->counts->reused, __ATOMIC_RELAXED);
-	build->totals.kept = __atomic_load_n(&build->counts->kept, __ATOMIC_RELAXED);
-	munmap(build->counts, sizeof *build->counts);
-}
-
 /* Everything up to the records in the spool. */
 static void build_prepare_and_work(struct build *build)
 {
@@ -266,7 +258,7 @@ static void build_prepare_and_work(struct build *build)
 		missing_report(build);
 	if ((build->items.count == 0 && !streams) || (build->options->strict && !totals_whole(&build->totals)))
 		return;
-	if (output_refuse(options->output, &error) || previous_open(build, &error) || counts_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
+	if (output_refuse(options->output, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
 		build_stop(build, options->output, NULL, &error);
 		return;
 	}
@@ -314,7 +306,6 @@ int build_run(const struct build_options *options)
 	build_prepare_and_work(&build);
 	workers_stop(build.workers);
 	bp_archive_close(build.previous);
-	counts_close(&build);
 	container_close(build.stream);
 	bool whole = totals_whole(&build.totals);
 	if (build_goes_on(&build) && build.totals.packed > 0 && (whole || !options->strict)) {

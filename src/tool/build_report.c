@@ -8,18 +8,19 @@
 #include <stdio.h>
 
 enum { WARNINGS_MAX = 2, WARNING_BYTES = 200 };
+static const char *const ORIGIN_NAMES[] = {[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_KEPT] = "kept"};
 
 /* What is odd about a material that was packed nevertheless. */
-static int warnings_list(const struct record_head *head, char texts[WARNINGS_MAX][WARNING_BYTES])
+static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES])
 {
 	int count = 0;
-	if (head->source.nonfinite_count > 0)
+	if (outcome->source.nonfinite_count > 0)
 		snprintf(texts[count++], WARNING_BYTES, "%" PRIu64 " cells are NaN or infinite; they are treated as not measured",
-		         head->source.nonfinite_count);
+		         outcome->source.nonfinite_count);
 	for (int c = 0; c < 3; c++)
-		if (!head->colour[c].converged) {
+		if (!outcome->head.colour[c].converged) {
 			snprintf(texts[count++], WARNING_BYTES, "the colour regression did not converge in %" PRIu32 " iterations (%s)",
-			         head->colour[c].iterations, CHANNEL_NAMES[c]);
+			         outcome->head.colour[c].iterations, CHANNEL_NAMES[c]);
 			break;
 		}
 	return count;
@@ -37,13 +38,14 @@ static void material_json(const struct item *item, const char *label, const stru
 		json_string(&json, "error", text);
 	} else {
 		char warnings[WARNINGS_MAX][WARNING_BYTES];
-		int count = warnings_list(&outcome->head, warnings);
+		int count = warnings_list(outcome, warnings);
 		json_integer(&json, "bytes", outcome->head.record_bytes);
 		json_number(&json, "seconds", outcome->seconds);
 		json_object(&json, "cpu_seconds");
 		for (int stage = 0; stage < STAGE_COUNT; stage++)
 			json_number(&json, stage_name((enum stage)stage), outcome->stage_seconds[stage]);
 		json_close(&json);
+		json_string(&json, "record", ORIGIN_NAMES[outcome->origin]);
 		json_string(&json, "profile", profile_name(outcome->head.profile));
 		facts_brief(&json, &outcome->head);
 		json_array(&json, "warnings");
@@ -66,9 +68,9 @@ void report_material(const struct item *item, const struct outcome *outcome, boo
 		report_error(label, item->source.name, &outcome->error);
 		return;
 	}
-	if (outcome->head.source.nonfinite_count > 0 && !quiet) { /* a fault of the file; the rest stands in --json */
+	if (outcome->source.nonfinite_count > 0 && !quiet) { /* a fault of the file; the rest stands in --json */
 		char warnings[WARNINGS_MAX][WARNING_BYTES];
-		warnings_list(&outcome->head, warnings);
+		warnings_list(outcome, warnings);
 		report_warning(label, item->source.name, "%s", warnings[0]);
 	}
 }

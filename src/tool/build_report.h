@@ -12,12 +12,21 @@
 #include "build.h"
 #include "items.h"
 
+/* Where a record comes from. */
+enum record_origin {
+	RECORD_FITTED,
+	RECORD_REUSED, /* taken unchanged from the older archive (--update) */
+	RECORD_KEPT    /* carried by its file (record_carried.h) */
+};
+
 /* What became of one material: everything that its report needs. */
 struct outcome {
 	bp_error error; /* status BP_OK: packed, and head is filled */
 	double seconds; /* in the worker */
 	double stage_seconds[STAGE_COUNT];
 	struct record_head head;
+	struct record_source source; /* the file */
+	enum record_origin origin;
 };
 
 struct build_totals {
@@ -25,8 +34,7 @@ struct build_totals {
 	uint64_t missing;         /* materials that the manifest lists and no input has */
 	uint64_t damaged;         /* containers or members that could not be read */
 	uint64_t skipped;         /* paths that are no files; only a warning */
-	uint64_t reused;          /* of the packed ones, taken unchanged from the older archive */
-	uint64_t kept;            /* of the packed ones, records that their files carried (record_carried.h) */
+	uint64_t reused, kept;    /* of the packed ones, by their records' origin */
 	uint64_t source_bytes, archive_bytes;
 	double seconds;
 };

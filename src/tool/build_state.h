@@ -16,10 +16,10 @@
 #include "spool.h"
 #include "workers.h"
 
-/* What workers count, in memory that they share with the parent. */
-struct work_counts {
-	uint64_t reused; /* records taken from the older archive */
-	uint64_t kept;   /* records that their files carried */
+/* What a worker delivers: this, and the record behind it. */
+struct delivery {
+	struct record_source source; /* the file that was read; of a record that was kept, its head has the measured one */
+	enum record_origin origin;
 };
 
 struct build {
@@ -38,7 +38,6 @@ struct build {
 	struct build_totals totals;
 	uint64_t bytes_total, bytes_done; /* of the listed items, for the progress bar */
 	bp_archive *previous;    /* with --update, the archive that is there already; else NULL */
-	struct work_counts *counts; /* NULL before the workers are forked */
 	bool stopped;            /* after an error that ends the build; it has been reported */
 };
 
@@ -64,6 +63,6 @@ bool build_stream_next(struct build *build, struct job *job);
 
 /* ---- build_work.c ---- */
 
-worker_fn build_work; /* its user is the struct build, as it was when the worker was forked */
+worker_fn build_work; /* its user is the struct build, as it was when the worker was forked; it makes a delivery */
 
 #endif

@@ -58,30 +58,48 @@ static void checksum_add(void *user, const void *bytes, size_t count)
 }
 
 /* The material's record: from the older archive, from the file itself, or, as nearly always, by fitting. */
-static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice, const struct record_source *source,
+static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice, struct delivery *delivery,
                             uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	const struct fit_options *options = &build->options->fit;
 	bp_status status = BP_OK;
-	if (build->previous) {
-		status = archive_reuse(build->previous, name, source, options, record, record_bytes, error);
-		if (*record)
-			__atomic_fetch_add(&build->counts->reused, 1, __ATOMIC_RELAXED);
-	}
-	if (!status && !*record) {
-		status = record_carried(lattice, name, source, options, record, record_bytes, error);
-		if (*record)
-			__atomic_fetch_add(&build->counts->kept, 1, __ATOMIC_RELAXED);
-	}
-	return status || *record ? status : record_pack(lattice, name, source, options, record, record_bytes, NULL, error);
+
+	delivery->origin = RECORD_REUSED;
+	if (build->previous)
+		status = archive_reuse(build->previous, name, &delivery->source, options, record, record_bytes, error);
+	if (status || *record)
+		return status;
+	delivery->origin = RECORD_KEPT;
+	status = record_carried(lattice, name, options, record, record_bytes, error);
+	if (status || *record)
+		return status;
+	delivery->origin = RECORD_FITTED;
+	return record_pack(lattice, name, &delivery->source, options, record, record_bytes, NULL, error);
 }
 
-bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error)
+/* Both in one piece. The record is freed. */
+static bp_status delivery_make(const struct delivery *delivery, uint8_t *record, size_t record_bytes, uint8_t **out, size_t *out_bytes,
+                               bp_error *error)
+{
+	uint8_t *whole = malloc(sizeof *delivery + record_bytes);
+	if (whole) {
+		memcpy(whole, delivery, sizeof *delivery);
+		memcpy(whole + sizeof *delivery, record, record_bytes);
+		*out = whole;
+		*out_bytes = sizeof *delivery + record_bytes;
+	}
+	free(record);
+	return whole ? BP_OK : error_memory(error, sizeof *delivery + record_bytes);
+}
+
+bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, size_t *out_bytes, bp_error *error)
 {
 	static struct source_cursor cursor; /* this process's own: it keeps a zip open from member to member */
 	const struct build *build = user;
 	struct slot_reader slot = {.fd = fd, .left = job->slot_bytes};
-	struct record_source source = {0};
+	struct delivery delivery = {.origin = RECORD_FITTED};
+	uint8_t *record = NULL;
+	size_t record_bytes = 0;
 	struct lattice lattice = {0};
 	struct sha256 sha;
 	bp_status status;
@@ -96,11 +114,11 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **record
 		status = source_item_read(&build->sources.items[job->number], &cursor, checksum_add, &sha, &lattice, error);
 	if (status)
 		return status;
-	source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
-	source.nonfinite_count = lattice.nonfinite_count;
-	sha256_finish(&sha, source.sha256);
+	delivery.source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
+	delivery.source.nonfinite_count = lattice.nonfinite_count;
+	sha256_finish(&sha, delivery.source.sha256);
 	stage_enter(STAGE_REST);
-	status = record_get(build, job->name, &lattice, &source, record, record_bytes, error);
+	status = record_get(build, job->name, &lattice, &delivery, &record, &record_bytes, error);
 	lattice_free(&lattice);
-	return status;
+	return status ? status : delivery_make(&delivery, record, record_bytes, out, out_bytes, error);
 }

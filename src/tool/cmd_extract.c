@@ -53,15 +53,22 @@ static bp_status table_fit(struct table *table, const struct model *model, bp_er
 /* What to write: a decoded table with its record, the table alone, or the parameters. */
 enum form { FORM_MERL, FORM_PLAIN, FORM_JSON };
 
+/* The record to carry: NULL where it is damaged, but not in anything that this program decodes, which it has done. */
+static bp_status record_read(const struct selection *selection, const struct index_entry *entry, uint8_t **record, bp_error *error)
+{
+	struct record_head head;
+	const bp_status status = archive_entry_record(selection->archive, entry, &head, record, error);
+	return status == BP_ERROR_CHECKSUM ? BP_OK : status;
+}
+
 static bp_status merl_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
                             const char *path, bool plain, struct table *table, bp_error *error)
 {
-	struct record_head same;
 	struct model *model = NULL;
 	uint8_t *record = NULL;
 	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
 	if (!status && !plain)
-		status = archive_entry_record(selection->archive, entry, &same, &record, error);
+		status = record_read(selection, entry, &record, error);
 	if (!status)
 		status = table_fit(table, model, error);
 	if (!status)
@@ -174,7 +181,8 @@ const struct command command_extract = {
 	.usage = "Usage: brdfpack extract [-C DIR] [--format merl|json] [--plain] ARCHIVE [NAME]...\n"
 	         "Writes DIR/NAME.binary for the named materials, or for all. Cells wholly below the horizon\n"
 	         "are negative, all others hold the model's value. The negative ones carry the material's\n"
-	         "record, so that building from these files loses nothing, unless a value was changed.\n"
+	         "record, which a build with the same profile and a budget that holds it takes over as it\n"
+	         "is, unless a value was changed.\n"
 	         "\n"
 	         "  -C, --directory DIR  where to (default: here); created when it is missing\n"
 	         "      --format merl    MERL files (the default)\n"

@@ -25,7 +25,7 @@ struct material {
 int material_load(const struct command *command, char **operands, int operand_count, struct material *material);
 void material_free(struct material *material); /* a zeroed struct is allowed */
 
-/* 1 where a cell of a decoded table counts: all but those that extraction writes as -1. malloc'ed; the caller frees it. */
+/* 1 where a cell of a decoded table counts: all but those that extraction writes as negative. malloc'ed; the caller frees it. */
 bp_status material_counting_cells(const struct record_head *head, uint8_t **valid, bp_error *error);
 
 #endif
