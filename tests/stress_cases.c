@@ -96,10 +96,15 @@ static void make_checkerboard(struct lattice *lattice, unsigned variant, uint64_
 }
 
 /* A mirror: one cell of theta_h holds everything; over a floor or over nothing. */
+/* A mirror, whose lobe is one slice wide, over three kinds of darkness; and one cell alone that is bright, in a plain material. */
 static void make_delta_lobe(struct lattice *lattice, unsigned variant, uint64_t seed)
 {
-	(void)seed;
-	FOR_EACH_CELL(lattice, n, c) grey(lattice, n, c.i == 0 ? 1e5 * (1 + c.d) : variant == 0 ? 0 : variant == 1 ? 1e-4 : 0.3);
+	if (variant < 3) {
+		FOR_EACH_CELL(lattice, n, c) grey(lattice, n, c.i == 0 ? 1e5 * (1 + c.d) : variant == 0 ? 0 : variant == 1 ? 1e-4 : 0.3);
+		return;
+	}
+	plain_fill(lattice, seed);
+	grey(lattice, (size_t)(stress_uniform(&seed) * (double)lattice_cells(lattice->dims)), 1e5);
 }
 
 static void make_step(struct lattice *lattice, unsigned variant, uint64_t seed)
@@ -246,7 +251,7 @@ const struct stress_kind STRESS_KINDS[] = {
 	{"constant", 12, make_constant},
 	{"bright-cell", 6, make_bright_cell},
 	{"checkerboard", 4, make_checkerboard},
-	{"delta-lobe", 3, make_delta_lobe},
+	{"delta-lobe", 4, make_delta_lobe},
 	{"step", 6, make_step},
 	{"one-valid", 3, make_one_valid},
 	{"missing-slices", 6, make_missing_slices},
