@@ -152,7 +152,7 @@ check-symbols: all
 
 # Adversarial materials (tests/stress.c). `make stress STRESS_FLAGS="-s 5"` takes more seeds.
 STRESS_FLAGS ?= -s 1
-STRESS_O     := $(addprefix $(BUILD)/tests/,stress.o stress_cases.o stress_reference.o stress_subject.o)
+STRESS_O     := $(addprefix $(BUILD)/tests/,stress.o stress_cases.o stress_checks.o stress_reference.o stress_subject.o stress_trial.o)
 $(BUILD)/tests/stress: $(STRESS_O) $(BUILD)/internal.a
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lgsl -lgslcblas $(LIBRARY_LIBS)
