@@ -227,8 +227,9 @@ static void check_recorded(const struct trial *trial, const struct packed_table 
 /*
  * A deviation of two regressions as it counts: 1e-12 may always be; what is more, over what the data's condition explains.
  * `units`: rounding errors act as if each observation were moved by so many half units of its last place. How far the line
- * then moves is tried in long double; four times the most of four trials may be, since rounding errors need not be as random.
- * And where the two stopped at different steps, the one may be off by what is left to go: four times the reference's last step.
+ * then moves is tried in long double; four times the most of four trials may be, since rounding errors need not be as random,
+ * and not less than as many half units of the line. And where the two stopped at different steps, the one may be off by what is
+ * left to go: four times the reference's last step.
  */
 static double deviation_counted(const struct trial *trial, double deviation, double units, bool same_stop, const struct oracle *slow,
                                 const double *x, const double *y, size_t n)
@@ -244,9 +245,10 @@ static double deviation_counted(const struct trial *trial, double deviation, dou
 	}
 	if (!same_stop)
 		moved += oracle_deviation(slow->intercept - slow->step[0], slow->slope - slow->step[1], slow, x, n);
+	const double may_be = fmax(4 * moved, units * 0x1p-53);
 	if (trial->verbose)
-		fprintf(stderr, "a regression deviates by %.3g where %.3g may be\n", deviation, 4 * moved);
-	return deviation * fmin(1, 1e-12 / (4 * moved));
+		fprintf(stderr, "a regression deviates by %.3g where %.3g may be\n", deviation, may_be);
+	return deviation * fmin(1, 1e-12 / may_be);
 }
 
 static bool is_constant(const double *x, size_t n)

@@ -31,7 +31,7 @@
  * offset nor a tiny or huge unit (1e-300 to 1e300) loses digits. Where the weights leave for observations far from that
  * mean, against their spread, the sums are taken once more about the new one; and where residuals are so small that the
  * rounding of the mean itself is seen in them, what it took is subtracted from each. Then the lines are those of the same
- * steps in long double to what half a unit of the observations' last places moves (tests/stress.c).
+ * steps in long double to what half a unit of the observations' last places moves (tests/stress_checks.c).
  */
 #ifndef MODEL_ROBUST_H
 #define MODEL_ROBUST_H
