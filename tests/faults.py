@@ -165,7 +165,7 @@ def kills(place, unit):
     duration = 60.0
     for _ in range(5):
         start = time.time()
-        subprocess.run(place.command(), check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        place.run()
         duration = min(duration, time.time() - start)
         place.reset()
     for kind, wanted in ("SIGKILL to the parent", 2 * unit), ("SIGKILL to a worker", 2 * unit), ("SIGTERM", unit), ("SIGINT to all", unit):
@@ -244,7 +244,7 @@ def failing_calls(name, command, check, enough=12):
     """The n-th call of each kind fails, for n = 1, 2, ... until the command no longer meets the fault so many times in a row."""
     for kind in "write", "read", "sync", "rename", "open", "alloc":
         at, last, passed, failed = 1, 1, 0, 0
-        while passed < (enough if kind == "alloc" else 12) and at < 100000:
+        while passed < (enough if kind == "alloc" else 6) and at < 100000:
             for always in (False,) if kind == "alloc" else (False, True):
                 what = "%s: %s call %d fails%s" % (name, kind, at, " and all after it" if always else "")
                 code, output = shimmed(command, kind, at, always, what)
@@ -254,7 +254,7 @@ def failing_calls(name, command, check, enough=12):
                 passed = passed + 1 if code == 0 else 0
                 check(what, kind, code, output)
             last = at
-            at += 1 if LONG or kind != "alloc" or at <= 40 else 1 + at // 10
+            at += 1 if LONG or kind != "alloc" or at <= 30 else 1 + at // 7
         print("%s, failing %s: calls 1 to %d, %d failed as they should" % (name, kind, last, failed), flush=True)
 
 
@@ -306,8 +306,10 @@ def failing_commands(place, folder):
             file.write(data)
     subprocess.run([TOOL, "subset", "-q", "-o", rest, whole, "material-1", "other"], check=True)
     archive = out + "/out.bpk"
-    for name, words in ("list", ["--json", whole]), ("verify", ["--deep", whole]), ("extract", ["-C", out, whole]), \
-            ("subset", ["-o", archive, whole, "material-2", "other"]), ("merge", ["-o", archive, first, rest]), ("recover", ["-o", archive, whole]):
+    commands = {"list": ["--json", whole], "verify": ["--deep", whole], "extract": ["-C", out, whole],
+                "subset": ["-o", archive, whole, "material-2", "other"], "merge": ["-o", archive, first, rest],
+                "recover": ["-o", archive, whole]}
+    for name, words in commands.items():
         shutil.rmtree(out, ignore_errors=True)
         os.mkdir(out)
         Command(name, words, out).fail_calls(place.old)
