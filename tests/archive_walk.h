@@ -23,14 +23,15 @@ enum {
 };
 
 /*
- * Opens, verifies (deeply when all lattices are small), finds and loads up to `most` materials from `first` on, in one of the
- * forms, and evaluates them; `also` says what else. Aborts when a value is negative, NaN or infinite. Returns what
- * verification said, or why it did not open. seen (may be NULL) receives up to `most` materials, *seen_count of them.
+ * Opens, verifies (which reads every record; deeply when all lattices are small and all materials wanted), finds and loads up to
+ * `most` materials from `first` on, in one of the forms, and evaluates them; `also` says what else. Aborts when a value is
+ * negative, NaN or infinite. Returns what verification said, or why it did not open. seen (may be NULL) receives up to `most`
+ * materials, *seen_count of them.
  */
 bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned also, struct walk_values *seen, uint64_t *seen_count);
 /*
- * What `recover` does, and a walk through what it saved, `most` materials from `first` on: *saved says how many and what was lost. Aborts when
- * the result does not verify, or holds another number of materials. BP_ERROR_* where nothing was saved.
+ * What `recover` does, and a walk through what it saved, `most` materials from `first` on: *saved says how many and what was
+ * lost. Aborts when the result does not verify, or holds another number of materials. BP_ERROR_* where nothing was saved.
  */
 bp_status archive_rescue(const char *path, uint64_t first, uint64_t most, struct walk_values *seen, uint64_t *seen_count,
                          struct recovery *saved);

@@ -30,6 +30,7 @@ struct subject {
 	size_t count;
 	struct walk_values *seen; /* of the intact archive, by name order */
 	uint64_t seen_count;
+	uint64_t *offset; /* of each material's record */
 	int fd; /* of the damaged copy */
 	char path[64];
 	size_t extract_every, rescue_every;
@@ -66,6 +67,13 @@ static void subject_read(const char *path, struct subject *out)
 	if (archive_walk(path, 0, bp_archive_count(archive), WALK_EXTRACT, out->seen, &out->seen_count) != BP_OK ||
 	    out->seen_count != bp_archive_count(archive))
 		fail("the archive is damaged to begin with", 0);
+	out->offset = calloc(out->seen_count, sizeof *out->offset);
+	for (uint64_t m = 0; m < out->seen_count; m++) {
+		bp_material_info info = {.struct_bytes = sizeof info};
+		if (bp_archive_info(archive, m, &info, NULL) != BP_OK)
+			fail("the archive is damaged to begin with", m);
+		out->offset[m] = info.record_offset;
+	}
 	bp_archive_close(archive);
 	out->fd = memfd_create("damaged", 0);
 	snprintf(out->path, sizeof out->path, "/proc/self/fd/%d", out->fd);
@@ -158,8 +166,17 @@ static size_t random_below(size_t n)
 	return (size_t)(random_state >> 11) % n;
 }
 
-/* One mutation of copy[*count], with room for 64 bytes more a turn. */
-static void mutate(uint8_t *copy, size_t *count)
+/* The material whose record is at this byte; behind the records the last one. */
+static uint64_t material_at(const struct subject *s, size_t at)
+{
+	uint64_t m = s->seen_count - 1;
+	while (m > 0 && s->offset[m] > at)
+		m--;
+	return m;
+}
+
+/* One mutation of copy[*count], with room for 64 bytes more a turn. Returns where. */
+static size_t mutate(uint8_t *copy, size_t *count)
 {
 	const size_t at = random_below(*count), rest = *count - at, length = 1 + random_below(rest < 4096 ? rest : 4096);
 	switch (random_below(6)) {
@@ -179,6 +196,7 @@ static void mutate(uint8_t *copy, size_t *count)
 			*count += 1 + random_below(63);
 		}
 	}
+	return at;
 }
 
 static void mutate_many(struct subject *s, size_t n, uint64_t seed)
@@ -188,10 +206,10 @@ static void mutate_many(struct subject *s, size_t n, uint64_t seed)
 	random_state = seed * 0x9e3779b97f4a7c15u + 1;
 	for (size_t i = 0; i < n; i++) {
 		const bool mended = i % 2;
-		size_t count = s->count;
+		size_t count = s->count, at = 0;
 		memcpy(copy, s->bytes, count);
 		for (size_t turns = 1 + random_below(3); turns > 0 && count > 0; turns--)
-			mutate(copy, &count);
+			at = mutate(copy, &count);
 		if (count == s->count && memcmp(copy, s->bytes, count) == 0) {
 			same++;
 			continue;
@@ -200,7 +218,8 @@ static void mutate_many(struct subject *s, size_t n, uint64_t seed)
 			archive_mend(copy, count);
 		if (ftruncate(s->fd, 0) != 0 || pwrite(s->fd, copy, count, 0) != (ssize_t)count)
 			fail("pwrite", i);
-		damaged_walk(s, random_below(s->seen_count), 3, mended ? DAMAGE_MENDED : DAMAGE_ANY, i / 2, i);
+		/* the first ones that were hit, and one of four times any */
+		damaged_walk(s, random_below(4) ? material_at(s, at) : random_below(s->seen_count), 3, mended ? DAMAGE_MENDED : DAMAGE_ANY, i / 2, i);
 	}
 	free(copy);
 	printf("mutate: %zu mutations of %zu bytes, %zu changed nothing\n", n, s->count, same);
@@ -307,5 +326,6 @@ int main(int argc, char **argv)
 	}
 	free(s.bytes);
 	free(s.seen);
+	free(s.offset);
 	return 0;
 }
