@@ -262,7 +262,7 @@ class Command:
     """A command that reads archives and may write files into a folder, over older ones."""
 
     def __init__(self, name, words, out):
-        self.command, self.out, self.name = [TOOL, name] + words, out, name
+        self.command, self.out, self.name = [TOOL] + words, out, name
         self.printed = subprocess.run(self.command, stdout=subprocess.PIPE, check=True).stdout
         self.new = self.files()
 
@@ -306,9 +306,11 @@ def failing_commands(place, folder):
             file.write(data)
     subprocess.run([TOOL, "subset", "-q", "-o", rest, whole, "material-1", "other"], check=True)
     archive = out + "/out.bpk"
-    commands = {"list": ["--json", whole], "verify": ["--deep", whole], "extract": ["-C", out, whole],
-                "subset": ["-o", archive, whole, "material-2", "other"], "merge": ["-o", archive, first, rest],
-                "recover": ["-o", archive, whole]}
+    commands = {"list": ["list", "--json", whole], "verify": ["verify", "--deep", whole], "extract": ["extract", "-C", out, whole],
+                "extract, json": ["extract", "--format", "json", "-C", out, whole],
+                "subset": ["subset", "-o", archive, whole, "material-2", "other"], "merge": ["merge", "-o", archive, first, rest],
+                "recover": ["recover", "-o", archive, whole], "render": ["render", "--size", "12", "-o", out + "/o.png", whole, "other"],
+                "show": ["show", "-o", out + "/o.svg", whole, "material-0"]}
     for name, words in commands.items():
         shutil.rmtree(out, ignore_errors=True)
         os.mkdir(out)
