@@ -28,7 +28,7 @@ done
 if [ -n "$long" ]; then
 	mutations=100000 truncate=(-x 1 -r 1) flip=(-x 1 -r 7) mutate=(-x 1 -r 11)
 else
-	mutations=2000 truncate=(-x 1 -r 31) flip=(-x 11 -r 201) mutate=(-x 5 -r 41)
+	mutations=1600 truncate=(-x 1 -r 31) flip=(-x 21 -r 401) mutate=(-x 5 -r 41)
 fi
 for profile in paper default; do
 	"$asan/tests/faults" "${truncate[@]}" truncate few-$profile.bpk
