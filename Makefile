@@ -165,7 +165,7 @@ stress-builds: # the same decoded values from several compilers and levels?
 FAULTS_FLAGS ?=
 # where the sanitized objects go: another folder of the same flags need not be built twice
 FAULTS_ASAN  ?= $(BUILD)/asan
-$(BUILD)/tests/faults: $(BUILD)/tests/faults.o $(BUILD)/tests/archive_walk.o $(BUILD)/internal.a
+$(BUILD)/tests/faults: $(addprefix $(BUILD)/,tests/faults.o tests/archive_walk.o src/tool/facts.o src/tool/json.o internal.a)
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lpthread $(LIBRARY_LIBS)
 $(BUILD)/tests/fault_shim.so: tests/fault_shim.c

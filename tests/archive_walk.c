@@ -1,12 +1,14 @@
 #include "archive_walk.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "archive/format.h"
-#include "codec/bytes.h"
-#include "codec/record.h"
+#include "archive/reader.h"
+#include "merl/merl_file.h"
+#include "tool/facts.h"
 
 static void values_check(const float *value, int count)
 {
@@ -39,7 +41,83 @@ static bool material_small(const bp_archive *archive, uint64_t m, char name[BP_N
 	return bp_archive_info(archive, m, &info, NULL) == BP_OK && (uint64_t)info.theta_h * info.theta_d * info.phi_d <= WALK_CELLS_MAX;
 }
 
-bp_status archive_walk(const char *path, uint64_t first, uint64_t most, struct walk_values *seen, uint64_t *seen_count)
+/* A path of this process's own, in memory where possible: recovery syncs what it writes. */
+static const char *scratch_path(char which)
+{
+	static char path[64];
+	snprintf(path, sizeof path, "%s/brdfpack-walk-%ld-%c", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid(), which);
+	return path;
+}
+
+/* Every head, as `list` reads them; those of materials first.. are printed, in its longest form. */
+static void heads_list(const bp_archive *archive, uint64_t first, uint64_t most)
+{
+	static FILE *nowhere;
+	const uint64_t count = bp_archive_count(archive);
+	struct index_page leaf;
+	struct index_entry entry;
+	struct record_head head;
+	leaf.count = 0;
+	if (!nowhere && !(nowhere = fopen("/dev/null", "w")))
+		abort();
+	for (uint64_t m = 0; m < count; m++) {
+		if (archive_entry(archive, m, &leaf, &entry, NULL) != BP_OK || archive_entry_head(archive, &entry, &head, NULL) != BP_OK)
+			continue;
+		if ((m + count - first % count) % count >= most)
+			continue;
+		struct json json = json_begin(nowhere, true);
+		json_object(&json, NULL);
+		json_string(&json, "name", head.name);
+		facts_full(&json, &head);
+		json_close(&json);
+		json_finish(&json);
+	}
+}
+
+static uint32_t file_crc32(const char *path)
+{
+	static uint8_t bytes[12 + 24 * WALK_CELLS_MAX + 1];
+	FILE *file = fopen(path, "rb");
+	if (!file)
+		abort();
+	const size_t count = fread(bytes, 1, sizeof bytes, file);
+	fclose(file);
+	return bytes_crc32(bytes, count);
+}
+
+/* The file that `extract` writes of material m: its CRC32, 0 where there is none. */
+static uint32_t material_extract(const bp_archive *archive, uint64_t m)
+{
+	const char *path = scratch_path('m');
+	struct index_page leaf;
+	struct index_entry entry;
+	struct record_head head, same;
+	struct expansion table = {0};
+	struct model *model = NULL;
+	uint8_t *record = NULL, *below = NULL;
+	uint32_t crc = 0;
+
+	leaf.count = 0;
+	if (archive_entry(archive, m, &leaf, &entry, NULL) != BP_OK || archive_entry_head(archive, &entry, &head, NULL) != BP_OK ||
+	    archive_entry_load(archive, &entry, &head, 0, &model, NULL) != BP_OK ||
+	    archive_entry_record(archive, &entry, &same, &record, NULL) != BP_OK || expansion_alloc(model->dims, &table, NULL) != BP_OK)
+		goto out;
+	below = malloc(lattice_cells(model->dims));
+	if (!below || lattice_below_horizon(model->dims, model->horizon_limit, below, NULL) != BP_OK || model_expand(model, 0, &table, NULL) != BP_OK)
+		goto out;
+	if (lattice_write_path(path, &table, below, record, head.record_bytes, NULL) == BP_OK) {
+		crc = file_crc32(path);
+		unlink(path);
+	}
+out:
+	expansion_free(&table);
+	model_free(model);
+	free(record);
+	free(below);
+	return crc;
+}
+
+bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned also, struct walk_values *seen, uint64_t *seen_count)
 {
 	bp_archive *archive = NULL;
 	bool small = true;
@@ -50,20 +128,26 @@ bp_status archive_walk(const char *path, uint64_t first, uint64_t most, struct w
 		*seen_count = 0;
 	if (status)
 		return status;
+	if (also & WALK_LIST)
+		heads_list(archive, first, most);
 	for (uint64_t n = 0; n < most && n < bp_archive_count(archive); n++) {
 		const uint64_t m = (first + n) % bp_archive_count(archive);
-		const bp_load_options options = {.struct_bytes = sizeof options, .form = (bp_form)(m % 2), .colour = (bp_colour)(m / 2 % 2),
-		                                 .max_log_rmse = m % 3 == 0 ? 0.1 : 0};
 		struct walk_values values = {.name = ""};
 		bp_material *material = NULL;
 		if (!material_small(archive, m, values.name)) {
 			small = false;
 			continue;
 		}
+		/* by name: its number is another one when others are lost */
+		const uint32_t way = bytes_crc32(values.name, strlen(values.name));
+		const bp_load_options options = {.struct_bytes = sizeof options, .form = (bp_form)(way % 2), .colour = (bp_colour)(way / 2 % 2),
+		                                 .max_log_rmse = way % 3 == 0 ? 0.1 : 0};
 		if (bp_material_load(archive, m, &options, &material, NULL) != BP_OK)
 			continue;
 		material_walk(material, &values);
 		bp_material_free(material);
+		if (also & WALK_EXTRACT)
+			values.extracted = material_extract(archive, m);
 		if (seen)
 			seen[count] = values;
 		count++;
@@ -72,6 +156,26 @@ bp_status archive_walk(const char *path, uint64_t first, uint64_t most, struct w
 		*seen_count = count;
 	status = bp_archive_verify(archive, small && most >= bp_archive_count(archive) ? BP_VERIFY_DEEP : 0, NULL, NULL, NULL);
 	bp_archive_close(archive);
+	return status;
+}
+
+bp_status archive_rescue(const char *path, uint64_t first, uint64_t most, struct walk_values *seen, uint64_t *seen_count,
+                         struct recovery *saved)
+{
+	const char *rescued = scratch_path('r');
+	bp_archive *archive = NULL;
+	bp_status status = archive_recover(path, rescued, NULL, NULL, saved, NULL);
+
+	if (seen_count)
+		*seen_count = 0;
+	if (status)
+		return status;
+	if (bp_archive_open(rescued, &archive, NULL) != BP_OK || bp_archive_count(archive) != saved->saved ||
+	    bp_archive_verify(archive, 0, NULL, NULL, NULL) != BP_OK)
+		abort();
+	bp_archive_close(archive);
+	status = archive_walk(rescued, first, most, 0, seen, seen_count);
+	unlink(rescued);
 	return status;
 }
 

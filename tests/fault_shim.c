@@ -1,6 +1,7 @@
 /*
  * fault_shim.c: a library to preload. The FAULT_AT-th call of the kind FAULT_CALL in a process fails, once (FAULT_ALWAYS: and
- * all that follow). Kinds: alloc, write (write, pwrite), read (read, pread), sync (fsync), rename, open.
+ * all that follow). Kinds: alloc (malloc, calloc, realloc, posix_memalign, aligned_alloc), write (write, pwrite), read (read, pread),
+ * sync (fsync), rename, open.
  */
 #include <dlfcn.h>
 #include <errno.h>
@@ -38,6 +39,7 @@ static int fails(char kind)
 void *__libc_malloc(size_t bytes);
 void *__libc_calloc(size_t n, size_t bytes);
 void *__libc_realloc(void *old, size_t bytes);
+void *__libc_memalign(size_t alignment, size_t bytes);
 
 #define EXPORT __attribute__((visibility("default")))
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
@@ -59,6 +61,20 @@ EXPORT void *realloc(void *old, size_t bytes)
 	if (fails('a'))
 		return errno = ENOMEM, NULL;
 	return __libc_realloc(old, bytes);
+}
+EXPORT int posix_memalign(void **block, size_t alignment, size_t bytes)
+{
+	void *found = fails('a') ? NULL : __libc_memalign(alignment, bytes);
+	if (!found)
+		return ENOMEM;
+	*block = found;
+	return 0;
+}
+EXPORT void *aligned_alloc(size_t alignment, size_t bytes)
+{
+	if (fails('a'))
+		return errno = ENOMEM, NULL;
+	return __libc_memalign(alignment, bytes);
 }
 EXPORT ssize_t write(int fd, const void *bytes, size_t count)
 {

@@ -23,13 +23,19 @@ for profile in paper default; do
 	"$build/brdfpack" build --any-lattice -q --profile $profile -o few-$profile.bpk few
 done
 "$build/brdfpack" build --any-lattice -q -o many.bpk many
-[ -n "$long" ] && mutations=100000 loads=10000 || mutations=3000 loads=10000
+# All damage is opened, verified, loaded and evaluated. What takes longer is sampled: the first number says how often it is listed and
+# extracted, the second how often recovered. Odd ones, so that a walk through bits meets each of a byte's eight.
+if [ -n "$long" ]; then
+	mutations=100000 truncate=(-x 1 -r 1) flip=(-x 1 -r 7) mutate=(-x 1 -r 11)
+else
+	mutations=1600 truncate=(-x 1 -r 31) flip=(-x 21 -r 401) mutate=(-x 5 -r 41)
+fi
 for profile in paper default; do
-	"$asan/tests/faults" truncate few-$profile.bpk
-	"$asan/tests/faults" flip few-$profile.bpk
+	"$asan/tests/faults" "${truncate[@]}" truncate few-$profile.bpk
+	"$asan/tests/faults" "${flip[@]}" flip few-$profile.bpk
 done
-"$asan/tests/faults" mutate many.bpk "$mutations"
-"$build/tests/faults" load many.bpk "$loads"
+"$asan/tests/faults" "${mutate[@]}" mutate many.bpk "$mutations"
+"$build/tests/faults" load many.bpk 10000
 "$build/tsan/tests/faults" threads many.bpk 100
 # shellcheck disable=SC2086
 python3 "$here/faults.py" "$build/brdfpack" "$build/tests/fault_shim.so" $long

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Coverage-guided fuzzing: tests/fuzz.sh BUILD SECONDS. BUILD holds fuzz_* (libFuzzer) and an ordinary brdfpack.
-# The seed corpus is made here: the test vectors, their records, small MERL files, some with such a record in them, the manifests, command lines.
+# The seed corpus is made here: the test vectors, their records, small MERL files, some with such a record in them, the manifests,
+# command lines.
 set -euo pipefail
 build=$1 seconds=$2
 here=$(cd "$(dirname "$0")" && pwd)
@@ -33,7 +34,8 @@ for h, d, p in (4, 4, 4), (5, 4, 6):
     body = struct.pack("<3i%dd" % (3 * cells), h, d, p, *values)
     open("%s/merl/%d%d%d" % (corpus, h, d, p), "wb").write(body)
     open("%s/merl/%d%d%d-short" % (corpus, h, d, p), "wb").write(body[:-3])
-lines = ["-o\nout.bpk\n-j\n4\nin", "--budget\n60k\n--quiet", "--budget=1.5MiB\nx", "--max-error\n1e-3\n--\n-q", "-j0\n-j\n-5\n--jobs=9999999999999999999",
+lines = ["-o\nout.bpk\n-j\n4\nin", "--budget\n60k\n--quiet", "--budget=1.5MiB\nx", "--max-error\n1e-3\n--\n-q",
+         "-j0\n-j\n-5\n--jobs=9999999999999999999",
          "--max-error=nan\n--help", "-qqj2\n--bud\n1000\n--output="]
 for n, line in enumerate(lines):
     open("%s/options/%d" % (corpus, n), "w").write(line)

@@ -1,4 +1,7 @@
-/* The archive reader on arbitrary bytes: header, index, heads, sections, evaluation. Three of four lengths have their checksums mended. */
+/*
+ * The archive reader on arbitrary bytes: header, index, heads, sections, evaluation, listing, extraction, and, for one length of
+ * eight, recovery. Three of four lengths have their checksums mended.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +25,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 		archive_mend(copy, count);
 	if (ftruncate(fd, 0) != 0 || pwrite(fd, copy, count, 0) != (ssize_t)count)
 		abort();
-	archive_walk(path, 0, 8, NULL, NULL);
+	archive_walk(path, 0, 8, WALK_LIST | WALK_EXTRACT, NULL, NULL);
+	if (count % 8 == 3) {
+		struct recovery saved;
+		archive_rescue(path, 0, 8, NULL, NULL, &saved);
+	}
 	free(copy);
 	return 0;
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Do decoded values depend on the compiler? tests/stress_builds.sh BUILD: packs and decodes the stress materials in several
 # builds, each in BUILD/NAME, and compares all decoded values with those of gcc -O3. Fails where they differ by more than 1e-5.
+# On request only, no job of scripts/test.sh: compiling all of them takes minutes.
 set -euo pipefail
 build=$1
 cd "$(dirname "$0")/.."
@@ -20,6 +21,9 @@ variant gcc-O3 CC=gcc CFLAGS=-O3
 variant gcc-O3-without-avx2 CC=gcc CFLAGS="-O3 -DBRDFPACK_PLAIN_KERNELS"
 variant gcc-O2 CC=gcc CFLAGS=-O2
 variant gcc-O0 CC=gcc CFLAGS=-O0
+variant clang-O3 CC=clang CFLAGS=-O3
+variant clang-O3-without-avx2 CC=clang CFLAGS="-O3 -DBRDFPACK_PLAIN_KERNELS"
 variant clang-O2 CC=clang CFLAGS=-O2
+variant clang-O0 CC=clang CFLAGS=-O0
 rm -f "$build/stress-values"
 exit $failed

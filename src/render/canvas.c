@@ -7,15 +7,15 @@
 #include <string.h>
 
 #include "../error.h"
+#include "../memory_stream.h"
 #include "font.h"
 
 struct canvas {
 	bool svg;
 	uint32_t width, height;
 	struct picture picture; /* PNG */
-	FILE *text;             /* SVG, into memory */
-	char *bytes;
-	size_t byte_count;
+	FILE *text;             /* SVG, into svg_bytes */
+	struct byte_buffer svg_bytes;
 	bool failed; /* out of memory while drawing */
 };
 
@@ -26,7 +26,7 @@ bp_status canvas_make(uint32_t width, uint32_t height, bool svg, struct canvas *
 		return error_memory(error, sizeof *canvas);
 	*canvas = (struct canvas){.svg = svg, .width = width, .height = height};
 	if (svg) {
-		if (!(canvas->text = open_memstream(&canvas->bytes, &canvas->byte_count))) {
+		if (!(canvas->text = memory_stream_open(&canvas->svg_bytes))) {
 			free(canvas);
 			return error_memory(error, BUFSIZ);
 		}
@@ -51,7 +51,7 @@ void canvas_free(struct canvas *canvas)
 	if (canvas) {
 		if (canvas->text)
 			fclose(canvas->text);
-		free(canvas->bytes);
+		byte_buffer_free(&canvas->svg_bytes);
 		picture_free(&canvas->picture);
 		free(canvas);
 	}
@@ -207,7 +207,7 @@ bp_status canvas_write(struct canvas *canvas, const char *path, bp_error *error)
 	if (!canvas->svg)
 		return picture_write_png(path, &canvas->picture, error);
 	fprintf(canvas->text, "</svg>\n");
-	if (fflush(canvas->text) != 0 || ferror(canvas->text) || canvas->failed)
-		return error_memory(error, canvas->byte_count);
-	return file_write_whole(path, canvas->bytes, canvas->byte_count, error);
+	if (fflush(canvas->text) != 0 || canvas->svg_bytes.failed || canvas->failed)
+		return error_memory(error, canvas->svg_bytes.count);
+	return file_write_whole(path, canvas->svg_bytes.bytes, canvas->svg_bytes.count, error);
 }

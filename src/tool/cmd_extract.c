@@ -6,6 +6,7 @@
 #include "selection.h"
 
 #include "../error.h"
+#include "../memory_stream.h"
 #include "../merl/merl_file.h"
 #include "../output_file.h"
 
@@ -83,32 +84,28 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 static bp_status json_write(const struct record_head *head, const char *path, bp_error *error)
 {
 	struct output_file file;
-	char *text = NULL;
-	size_t bytes = 0;
+	struct byte_buffer text = {0};
 	bp_status status;
 
-	FILE *memory = open_memstream(&text, &bytes);
+	FILE *memory = memory_stream_open(&text);
 	if (!memory)
-		return error_memory(error, 0);
+		return error_memory(error, BUFSIZ);
 	struct json json = json_begin(memory, true);
 	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
 	facts_full(&json, head);
 	json_close(&json);
 	json_finish(&json);
-	if (fclose(memory) != 0) {
-		free(text);
-		return error_memory(error, bytes);
-	}
-	status = output_file_open(path, &file, error);
+	fclose(memory);
+	status = text.failed ? error_memory(error, text.count) : output_file_open(path, &file, error);
 	if (!status) {
-		status = output_file_write(&file, text, bytes, error);
+		status = output_file_write(&file, text.bytes, text.count, error);
 		if (!status)
 			status = output_file_commit(&file, error);
 		else
 			output_file_discard(&file);
 	}
-	free(text);
+	byte_buffer_free(&text);
 	return status;
 }
 
