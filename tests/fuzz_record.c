@@ -74,11 +74,10 @@ static bool lattice_extracted(const struct record_head *head, const uint8_t *rec
 
 static void carried_check(const struct lattice *lattice, const struct fit_options *options)
 {
-	const struct record_source source = {0};
 	struct record_head head;
 	uint8_t *record;
 	size_t bytes;
-	if (record_carried(lattice, "m", &source, options, &record, &bytes, NULL) != BP_OK || !record)
+	if (record_carried(lattice, "m", options, &record, &bytes, NULL) != BP_OK || !record)
 		return;
 	if (record_head_parse(record, bytes, &head, NULL) != BP_OK || head.record_bytes != bytes)
 		abort();
