@@ -110,6 +110,23 @@ static void announce(double values[VALUES], uint64_t count)
 	memcpy(&values[1], &bits, sizeof bits);
 }
 
+/* The search ends with the first negative value that carries nothing: no file is read to its end in vain. */
+static void it_begins_with_the_first_negative_value(void **state)
+{
+	(void)state;
+	const uint8_t bytes[7] = {1, 2, 3, 4, 5, 6, 7};
+	static const double before[] = {0.5, 0.0, -0.5, -1e300, -0.0, -INFINITY};
+	for (size_t k = 0; k < sizeof before / sizeof *before; k++) {
+		struct carried_reader reader = {.values = VALUES + 1};
+		double values[VALUES + 1];
+		values[0] = before[k];
+		values_make(bytes, 7, values + 1);
+		assert_true(carried_find(&reader, values, VALUES + 1));
+		assert_int_equal(reader.whole, k < 2);
+		free(reader.bytes);
+	}
+}
+
 static void a_file_that_lost_some_of_it_carries_nothing(void **state)
 {
 	(void)state;
@@ -143,6 +160,7 @@ int main(void)
 		cmocka_unit_test(the_rest_is_exactly_minus_one),
 		cmocka_unit_test(room_is_six_bytes_to_a_value_less_twelve),
 		cmocka_unit_test(other_files_carry_nothing),
+		cmocka_unit_test(it_begins_with_the_first_negative_value),
 		cmocka_unit_test(a_file_that_lost_some_of_it_carries_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

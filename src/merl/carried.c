@@ -66,7 +66,11 @@ bool carried_find(struct carried_reader *reader, const double *values, size_t co
 	for (size_t n = 0; n < count && !reader->ended; n++) {
 		uint64_t bits;
 		memcpy(&bits, &values[n], sizeof bits);
-		if (bits >> SIGNATURE_SHIFT == SIGNATURE && !value_read(reader, bits))
+		if (bits >> 63 == 0)
+			continue;
+		if (bits >> SIGNATURE_SHIFT != SIGNATURE)
+			reader->ended = reader->at == 0; /* another program's way to say it: most files end here */
+		else if (!value_read(reader, bits))
 			return false;
 	}
 	return true;

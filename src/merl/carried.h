@@ -6,7 +6,8 @@
  *
  *     8 bytes 8B "CAR" 0D 0A 1A 0A; uint32 n; n bytes; zeros, which are cells of exactly -1
  *
- * all little-endian. format-spec/FORMAT.md, "Extracted files", says what the bytes are; here they are any.
+ * all little-endian. It begins with the first value of the file whose sign bit is set, or not at all.
+ * format-spec/FORMAT.md, "Extracted files", says what the bytes are; here they are any.
  */
 #ifndef MERL_CARRIED_H
 #define MERL_CARRIED_H
