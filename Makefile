@@ -28,7 +28,7 @@ SONAME   := libbrdfpack.so.$(firstword $(subst ., ,$(VERSION)))
 SHARED   := libbrdfpack.so.$(VERSION)
 
 # The library: everything a renderer links. The tool adds sources (libarchive), images and the command line.
-TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c container.c sha256.c demo.c)
+TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c container.c sha256.c demo.c) src/memory_stream.c
 LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/merl/*.c src/model/*.c src/codec/*.c src/archive/*.c))
 TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c)
 LIBRARY_O    := $(LIBRARY_C:%.c=$(BUILD)/%.o)
