@@ -1,18 +1,10 @@
 /*
- * packed_fixture.h: a small glossy lattice, and how to decode a record that lies in memory.
+ * packed_fixture.h: a small glossy lattice.
  */
 #ifndef PACKED_FIXTURE_H
 #define PACKED_FIXTURE_H
 
 #include "codec/record.h"
-
-/* A record_fetch_fn: user is the record. */
-static bp_status record_bytes_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (const uint8_t *)user + offset, count);
-	return BP_OK;
-}
 
 /* Every cell valid: a diffuse part, and a lobe that depends on all three angles; unit times as bright. The caller frees it. */
 static void glossy_lattice_make(struct lattice_dims dims, double unit, struct lattice *out)

@@ -32,13 +32,6 @@ static void lattice_changed(const struct lattice *from, double s, int turn, stru
 	lattice_validate(out);
 }
 
-static bp_status fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (uint8_t *)user + offset, count);
-	return BP_OK;
-}
-
 static void decoded(const struct lattice *lattice, struct expansion *out)
 {
 	const struct fit_options options = {.profile = PROFILE_DEFAULT, .budget_bytes = 3000, .effort = 5};
@@ -48,7 +41,7 @@ static void decoded(const struct lattice *lattice, struct expansion *out)
 	uint8_t *record;
 	size_t bytes;
 	assert_int_equal(record_pack(lattice, "m", &source, &options, &record, &bytes, &head, NULL), BP_OK);
-	assert_int_equal(record_decode(&head, 0, fetch, record, &model, NULL), BP_OK);
+	assert_int_equal(record_decode_whole(&head, 0, record, &model, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(lattice->dims, out, NULL), BP_OK);
 	assert_int_equal(model_expand(model, 0, out, NULL), BP_OK);
 	model_free(model);

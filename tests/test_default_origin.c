@@ -8,13 +8,6 @@
 static const struct lattice_dims DIMS = {60, 60, 40};
 enum { WAVES = 40, BUDGET = 8000 }; /* binds */
 
-static bp_status record_bytes_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (const uint8_t *)user + offset, count);
-	return BP_OK;
-}
-
 static uint32_t state;
 static double draw(void)
 {
@@ -61,7 +54,7 @@ static void packed_make(const struct lattice *lattice, uint32_t budget, struct p
 	struct model *model = NULL;
 
 	assert_int_equal(record_pack(lattice, "m", &source, &options, &out->record, &out->bytes, &out->head, NULL), BP_OK);
-	assert_int_equal(record_decode(&out->head, 0, record_bytes_fetch, out->record, &model, NULL), BP_OK);
+	assert_int_equal(record_decode_whole(&out->head, 0, out->record, &model, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(lattice->dims, &out->table, NULL), BP_OK);
 	assert_int_equal(model_expand(model, 0, &out->table, NULL), BP_OK);
 	model_free(model);

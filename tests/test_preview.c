@@ -25,7 +25,7 @@ static void a_preview_holds_every_second_corner(void **state)
 		if (record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, &error))
 			fail_msg("%s", error.message);
 		for (uint32_t layers = 1; layers <= head.layer_count; layers++) {
-			if (record_decode(&head, layers, record_bytes_fetch, record, &fitted, &error))
+			if (record_decode_whole(&head, layers, record, &fitted, &error))
 				fail_msg("%s", error.message);
 			assert_true(model_has_half(dims, &small));
 			assert_int_equal(expansion_alloc(dims, &whole, NULL), BP_OK);

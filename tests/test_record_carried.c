@@ -35,7 +35,7 @@ static void decode(struct packed *packed)
 {
 	struct model *model;
 	assert_int_equal(record_head_parse(packed->record, packed->bytes, &packed->head, NULL), BP_OK);
-	assert_int_equal(record_decode(&packed->head, 0, record_bytes_fetch, packed->record, &model, NULL), BP_OK);
+	assert_int_equal(record_decode_whole(&packed->head, 0, packed->record, &model, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(packed->head.dims, &packed->table, NULL), BP_OK);
 	assert_int_equal(model_expand(model, 0, &packed->table, NULL), BP_OK);
 	packed->below = malloc(lattice_cells(packed->head.dims));

@@ -38,13 +38,6 @@ static bp_status pack(const struct lattice *lattice, uint32_t budget, double max
 	return record_pack(lattice, "material", &source, &options, record, bytes, head, error);
 }
 
-static bp_status fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	(void)error;
-	memcpy(bytes, (uint8_t *)user + offset, count);
-	return BP_OK;
-}
-
 static void the_recorded_error_of_every_layer_is_the_measured_one(void **state)
 {
 	(void)state;
@@ -62,7 +55,7 @@ static void the_recorded_error_of_every_layer_is_the_measured_one(void **state)
 			struct model *model = NULL;
 			struct fidelity measured;
 			assert_int_equal(expansion_alloc(head.dims, &table, NULL), BP_OK);
-			assert_int_equal(record_decode(&head, layers, fetch, record, &model, NULL), BP_OK);
+			assert_int_equal(record_decode_whole(&head, layers, record, &model, NULL), BP_OK);
 			assert_int_equal(model->layer_count, layers);
 			assert_int_equal(model_expand(model, 0, &table, NULL), BP_OK);
 			assert_int_equal(fidelity_measure(&lattice, &table, &measured, NULL), BP_OK);
@@ -173,7 +166,7 @@ static void sizes_of_all_orders_pack_and_come_back_finite(void **state)
 		size_t bytes;
 		lattice_make(DIMS[1], sizes[i], &lattice);
 		assert_int_equal(pack(&lattice, 60400, 0, &record, &bytes, &head, NULL), BP_OK);
-		assert_int_equal(record_decode(&head, 0, fetch, record, &model, NULL), BP_OK);
+		assert_int_equal(record_decode_whole(&head, 0, record, &model, NULL), BP_OK);
 		assert_int_equal(expansion_alloc(head.dims, &table, NULL), BP_OK);
 		assert_int_equal(model_expand(model, 0, &table, NULL), BP_OK);
 		for (size_t cell = 0; cell < 64; cell++)
@@ -220,7 +213,7 @@ static void damage_behind_a_right_checksum_never_crashes(void **state)
 				uint8_t *byte = record + head.sections[s].offset + at;
 				*byte ^= (uint8_t)(1 << bit);
 				head.sections[s].crc32 = bytes_crc32(record + head.sections[s].offset, head.sections[s].bytes);
-				if (record_decode(&head, 0, fetch, record, &model, NULL) == BP_OK)
+				if (record_decode_whole(&head, 0, record, &model, NULL) == BP_OK)
 					assert_int_equal(model_expand(model, 0, &table, NULL), BP_OK);
 				model_free(model);
 				*byte ^= (uint8_t)(1 << bit);

@@ -31,7 +31,7 @@ bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct
 bp_status archive_entry_head(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
                              bp_error *error);
 
-/* Reads an entry's whole record: *record is malloc'ed, head and section checksums are checked. For merge, subset and --update. */
+/* Reads an entry's whole record: *record is malloc'ed, head and section checksums are checked. For merge, subset, --update and extract. */
 bp_status archive_entry_record(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
                                uint8_t **record, bp_error *error);
 

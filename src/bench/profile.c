@@ -31,16 +31,6 @@ static void profile_free(void *opaque)
 	free(state);
 }
 
-static bp_status fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
-{
-	const struct profile_state *state = user;
-
-	if (offset > state->bytes || count > state->bytes - offset)
-		return error_set(error, BP_ERROR_CORRUPT, offset, "the record ends before");
-	memcpy(bytes, state->record + offset, count);
-	return BP_OK;
-}
-
 enum { EFFORT_USUAL = 5 };
 
 static bp_status fit_profile(enum profile profile, const struct bench_material *material, size_t budget_bytes, int effort,
@@ -89,13 +79,13 @@ static size_t profile_parameters(const void *state)
 
 static bp_status profile_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
-	struct profile_state *state = (struct profile_state *)(uintptr_t)opaque; /* fetch only reads it */
+	const struct profile_state *state = opaque;
 	struct record_head head;
 	struct model *model = NULL;
 	bp_status status;
 
 	if ((status = record_head_parse(state->record, state->bytes, &head, error)) ||
-	    (status = record_decode(&head, 0, fetch, state, &model, error)))
+	    (status = record_decode_whole(&head, 0, state->record, &model, error)))
 		return status;
 	status = model_expand(model, 0, out, error);
 	model_free(model);
