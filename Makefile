@@ -29,8 +29,8 @@ SHARED   := libbrdfpack.so.$(VERSION)
 
 # The library: everything a renderer links. The tool adds sources (libarchive), images and the command line.
 TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c container.c sha256.c demo.c) src/memory_stream.c
-LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/merl/*.c src/model/*.c src/codec/*.c src/archive/*.c))
-TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c)
+LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/merl/*.c src/model/*.c src/model/*/*.c src/codec/*.c src/codec/*/*.c src/archive/*.c))
+TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c src/tool/*/*.c)
 LIBRARY_O    := $(LIBRARY_C:%.c=$(BUILD)/%.o)
 TOOL_O       := $(TOOL_C:%.c=$(BUILD)/%.o)
 TEST_C       := $(wildcard tests/test_*.c)

@@ -5,7 +5,7 @@
 #   OUT-fit.svg       error against fit time
 #   OUT-evaluate.svg  error against evaluation time
 #
-# The default profile has a second line: its efforts 1 to 9, all at 60,400 bytes.
+# The spectral profile has a second line: its efforts 1 to 9, all at 60,400 bytes.
 # Each shows log RMSE (lower is better) and the rendered sphere's PSNR under the key lights (higher is better).
 # The lossless codecs stand outside: their error is 0. With PNG=1 the same as PNG files, for a look.
 set -e

@@ -381,7 +381,7 @@ def decode_paper(record, layers):
     return rgb
 
 
-# ---- 9: the default profile ----
+# ---- 9: the spectral profile ----
 
 def rounded(x, least, most):
     return math.floor(min(max(x, least), most) + 0.5)
@@ -613,12 +613,12 @@ def inverse_lift(x):
     return z
 
 
-DEFAULT_KINDS = {(16, 0, 2), (17, 1, 2)}
+SPECTRAL_KINDS = {(16, 0, 2), (17, 1, 2)}
 
 
-def decode_default(record, layers):
+def decode_spectral(record, layers):
     h, d, p = record.dims
-    wanted = record.load_list(layers, DEFAULT_KINDS)
+    wanted = record.load_list(layers, SPECTRAL_KINDS)
     demand([(s[0], s[3]) for s, _ in wanted] == [(16, 0)] + [(17, l) for l in range(layers)], "corrupt", record.base, "sections of fields and planes")
     data = wanted[0][1]
     demand(len(data) == 76, "corrupt", record.base, "the fields' bytes")
@@ -673,7 +673,7 @@ def decode_default(record, layers):
     return rgb
 
 
-DECODERS = {1: decode_paper, 2: decode_default}
+DECODERS = {1: decode_paper, 2: decode_spectral}
 
 
 # ---- commands ----

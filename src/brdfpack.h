@@ -124,7 +124,7 @@ typedef struct bp_channel {
 typedef struct bp_material_info {
 	size_t struct_bytes;       /* sizeof(bp_material_info), set by the caller */
 	char name[BP_NAME_BYTES_MAX + 1];
-	uint32_t profile;          /* 1: paper, 2: default */
+	uint32_t profile;          /* 1: paper, 2: spectral */
 	uint32_t codec_version;    /* of the encoder; 0: layers have been dropped since */
 	uint32_t theta_h, theta_d, phi_d; /* cells of the lattice */
 	uint32_t head_bytes, record_bytes;

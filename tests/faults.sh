@@ -19,7 +19,7 @@ for n in range(2):
 for n in range(400):
     fixtures.write("many/material-%03d.binary" % n, fixtures.table(n + 1, (4 + n % 3, 5, 6)), (4 + n % 3, 5, 6))
 END
-for profile in paper default; do
+for profile in paper spectral; do
 	"$build/brdfpack" build --any-lattice -q --profile $profile -o few-$profile.bpk few
 done
 "$build/brdfpack" build --any-lattice -q -o many.bpk many
@@ -30,7 +30,7 @@ if [ -n "$long" ]; then
 else
 	mutations=1600 truncate=(-x 1 -r 31) flip=(-x 21 -r 401) mutate=(-x 5 -r 41)
 fi
-for profile in paper default; do
+for profile in paper spectral; do
 	"$asan/tests/faults" "${truncate[@]}" truncate few-$profile.bpk
 	"$asan/tests/faults" "${flip[@]}" flip few-$profile.bpk
 done

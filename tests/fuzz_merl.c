@@ -35,7 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 		for (int c = 0; c < 3; c++)
 			if (lattice.valid[i] && !(lattice.rgb[c][i] >= 0 && lattice.rgb[c][i] <= DBL_MAX))
 				abort();
-	for (int p = PROFILE_PAPER; p <= PROFILE_DEFAULT; p++) {
+	for (int p = PROFILE_PAPER; p <= PROFILE_SPECTRAL; p++) {
 		const struct fit_options options = {(enum profile)p, 60400, 0, 5};
 		uint8_t *record;
 		size_t bytes;

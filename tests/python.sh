@@ -12,7 +12,7 @@ mkdir in # the reader is slow: four materials of very different kinds, and the s
 for name in silvered-mirror mother-of-pearl wine-velvet terracotta; do mv all/$name.binary in; done
 python3 "$here/cli/fixtures.py" in
 rm in/truncated.binary in/trailing.binary in/header.binary in/extents.binary in/empty.binary in/unmeasured.binary
-for profile in paper default; do
+for profile in paper spectral; do
 	"$tool" build -q --any-lattice --profile $profile -o $profile.bpk in
 	"$tool" extract -C $profile $profile.bpk
 	python3 "$reader" verify $profile.bpk

@@ -16,8 +16,8 @@
 #include <cmocka.h>
 #include <gsl/gsl_cdf.h>
 
-#include "model/albedo.h"
-#include "model/sample.h"
+#include "model/sample/albedo.h"
+#include "model/sample/sample.h"
 
 #define ORACLE __attribute__((unused)) static
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/robust.h"
+#include "model/robust/robust.h"
 #include "robust_oracle.h"
 #include "stress_reference.h"
 
@@ -34,7 +34,7 @@ static double value_deviation(const double *a, const double *b, double factor, s
 static double value_floor(const struct packed_table *base, size_t c)
 {
 	const size_t cells = lattice_cells(base->head.dims);
-	if (base->head.profile == PROFILE_DEFAULT)
+	if (base->head.profile == PROFILE_SPECTRAL)
 		return 0;
 	return fmax(1e-6 * largest_of(base->value + c * cells, cells), fabs(base->head.colour[c].diffuse));
 }

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "model/marginal.h"
+#include "model/paper/marginal.h"
 
 double relative_deviation(double found, double wanted, double floor)
 {

@@ -10,7 +10,7 @@ const char *const PROPERTY_NAMES[PROPERTY_COUNT] = {
 
 const struct subject SUBJECTS[SUBJECT_COUNT] = {
 	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-12, 1e-12, 1e-12}, {70, 80, 70, 80}},
-	{"default", PROFILE_DEFAULT, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-12, 1e-12, 1e-12}, {120, 120, 120, 120}},
+	{"spectral", PROFILE_SPECTRAL, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-12, 1e-12, 1e-12}, {120, 120, 120, 120}},
 };
 static const struct {
 	enum profile profile;
@@ -19,14 +19,14 @@ static const struct {
 	double limit;
 } EXCEPTIONS[] = {
 	/* Ranges beyond single precision: the coefficients' rounding errors are what is lost. */
-	{PROFILE_DEFAULT, "bright-cell", WHOLE_ONE, 10},
-	{PROFILE_DEFAULT, "bright-cell", WHOLE_TEN, 30},
-	{PROFILE_DEFAULT, "checkerboard", WHOLE_ONE, 10},
-	{PROFILE_DEFAULT, "checkerboard", WHOLE_TEN, 10},
-	{PROFILE_DEFAULT, "odd-channel", WHOLE_ONE, 10},
-	{PROFILE_DEFAULT, "odd-channel", WHOLE_TEN, 30},
-	{PROFILE_DEFAULT, "random-validity", WHOLE_ONE, 2}, /* a hundredth of the cells: not always recognised */
-	{PROFILE_DEFAULT, "random-validity", WHOLE_TEN, 2},
+	{PROFILE_SPECTRAL, "bright-cell", WHOLE_ONE, 10},
+	{PROFILE_SPECTRAL, "bright-cell", WHOLE_TEN, 30},
+	{PROFILE_SPECTRAL, "checkerboard", WHOLE_ONE, 10},
+	{PROFILE_SPECTRAL, "checkerboard", WHOLE_TEN, 10},
+	{PROFILE_SPECTRAL, "odd-channel", WHOLE_ONE, 10},
+	{PROFILE_SPECTRAL, "odd-channel", WHOLE_TEN, 30},
+	{PROFILE_SPECTRAL, "random-validity", WHOLE_ONE, 2}, /* a hundredth of the cells: not always recognised */
+	{PROFILE_SPECTRAL, "random-validity", WHOLE_TEN, 2},
 };
 
 double limit_of(const struct subject *subject, uint32_t budget, const char *kind, enum property property)

@@ -59,9 +59,9 @@ static void methods_are_chosen_by_their_whole_names(void **unused)
 	char unknown[16];
 	(void)unused;
 
-	assert_true(methods_choose("default,cat", on, unknown, sizeof unknown));
+	assert_true(methods_choose("spectral,cat", on, unknown, sizeof unknown));
 	for (int m = 0; m < METHOD_COUNT; m++)
-		assert_int_equal(on[m], !strcmp(METHODS[m].name, "default") || !strcmp(METHODS[m].name, "cat"));
+		assert_int_equal(on[m], !strcmp(METHODS[m].name, "spectral") || !strcmp(METHODS[m].name, "cat"));
 	assert_false(methods_choose("ward,defaul", on, unknown, sizeof unknown));
 	assert_string_equal(unknown, "defaul");
 	for (int m = 0; m < METHOD_COUNT; m++)

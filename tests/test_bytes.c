@@ -1,6 +1,6 @@
 #include "archive_fixture.h"
 
-#include "codec/name.h"
+#include "name.h"
 
 static void values_come_back_as_written(void **state)
 {

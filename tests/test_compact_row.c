@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "model/compact_row.h"
-#include "model/fast_math.h"
+#include "model/table/compact_row.h"
+#include "model/math/fast_math.h"
 #include "model/kernels.h"
 
 enum { PERIOD_MAX = 180, BLOCKS_MAX = 10, LINE = PERIOD_MAX + 2 * CELLS_MAX };

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "model/copula.h"
+#include "model/paper/copula.h"
 #include "model/kernels.h"
 
 static uint64_t state = 17;

@@ -9,9 +9,9 @@
 
 #include <cmocka.h>
 
-#include "model/cosines.h"
+#include "model/spectral/cosines.h"
 #include "model/kernels.h"
-#include "model/spectrum.h"
+#include "model/spectral/spectrum.h"
 
 static uint64_t state = 5;
 static double uniform(void)

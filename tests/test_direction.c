@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "model/direction.h"
+#include "model/table/direction.h"
 
 static uint64_t state = 7;
 static double uniform(void)

@@ -10,11 +10,11 @@
 
 #include <cmocka.h>
 
-#include "model/compact.h"
-#include "model/direction.h"
-#include "model/evaluate.h"
+#include "model/table/compact.h"
+#include "model/table/direction.h"
+#include "model/table/evaluate.h"
 #include "model/kernels.h"
-#include "model/table.h"
+#include "model/table/table.h"
 
 static uint64_t state = 11;
 enum { COUNT = 200 };

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "model/fast_math.h"
+#include "model/math/fast_math.h"
 
 static uint64_t state = 1;
 static double uniform(void)

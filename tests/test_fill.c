@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "model/fill.h"
+#include "model/math/fill.h"
 #include "model/kernels.h"
 
 static uint64_t state = 11;

@@ -6,9 +6,9 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "tool/items.h"
+#include "tool/build/items.h"
 #include "tool/progress.h"
-#include "tool/spool.h"
+#include "tool/build/spool.h"
 
 static void items_are_sorted_by_the_bytes_of_their_names(void **state)
 {

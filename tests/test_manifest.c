@@ -6,7 +6,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "tool/manifest.h"
+#include "tool/build/manifest.h"
 
 #define SHA "d6506c69e44430bfe8ea676f3950599ca3a6bfb1f46b9906da336d13991bd37d"
 

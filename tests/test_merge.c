@@ -244,7 +244,7 @@ static void a_record_is_reused_when_source_options_and_codec_are_the_same(void *
 		if (n == 2) now.options.budget_bytes++;
 		if (n == 3) now.options.effort++;
 		if (n == 4) now.options.max_error = 0.5;
-		if (n == 5) now.options.profile = PROFILE_DEFAULT;
+		if (n == 5) now.options.profile = PROFILE_SPECTRAL;
 		assert_int_equal(archive_reuse(current, "delrin", &now.source, &now.options, &got, &bytes, NULL), BP_OK);
 		assert_null(got);
 	}

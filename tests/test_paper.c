@@ -11,10 +11,10 @@
 #include <cmocka.h>
 
 #include "model/fidelity.h"
-#include "model/field.h"
+#include "model/paper/field.h"
 #include "model/kernels.h"
 #include "model/model.h"
-#include "model/paper.h"
+#include "model/paper/paper.h"
 
 static const struct fit_options OPTIONS = {.profile = PROFILE_PAPER, .budget_bytes = 60400, .effort = 5};
 static const struct lattice_dims SMALL[] = {{4, 4, 4}, {12, 10, 16}, {5, 7, 9}, {9, 33, 5}};

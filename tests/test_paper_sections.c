@@ -1,8 +1,8 @@
 #include "archive_fixture.h"
 
 #include "codec/profile_codec.h"
-#include "codec/sparse_code.h"
-#include "model/paper.h"
+#include "codec/paper/sparse_code.h"
+#include "model/paper/paper.h"
 
 static uint64_t random_state = 88172645463325252u;
 static uint32_t random_below(uint32_t n)

@@ -9,7 +9,7 @@
 static void a_preview_holds_every_second_corner(void **state)
 {
 	(void)state;
-	const enum profile profiles[] = {PROFILE_PAPER, PROFILE_DEFAULT};
+	const enum profile profiles[] = {PROFILE_PAPER, PROFILE_SPECTRAL};
 	for (int p = 0; p < 2; p++) {
 		struct lattice lattice;
 		struct fit_options options = {profiles[p], 60400, 0, 5};
@@ -50,7 +50,7 @@ static void a_preview_holds_every_second_corner(void **state)
 	}
 }
 
-/* A hundred materials: one of the default profile on MERL's lattice, in the middle of the names, and 99 that nobody loads. */
+/* A hundred materials: one of the spectral profile on MERL's lattice, in the middle of the names, and 99 that nobody loads. */
 static bp_status archive_of_a_hundred(const char *path, uint8_t *record, size_t bytes)
 {
 	struct archive_writer *writer = NULL;
@@ -87,7 +87,7 @@ static uint64_t bytes_to_load(const char *path, const bp_load_options *options, 
 static void a_preview_of_one_in_a_hundred_reads_at_most_24_KiB_and_all_of_it_16_KiB_more_than_its_record(void **state)
 {
 	(void)state;
-	const struct fit_options options = {PROFILE_DEFAULT, 60400, 0, 5};
+	const struct fit_options options = {PROFILE_SPECTRAL, 60400, 0, 5};
 	const struct record_source source = {.bytes = 1};
 	struct lattice lattice;
 	struct record_head head;

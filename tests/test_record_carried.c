@@ -19,7 +19,7 @@
 #include "packed_fixture.h"
 
 static const struct lattice_dims DIMS = {20, 16, 24};
-static const struct fit_options USUAL[2] = {{PROFILE_PAPER, 9000, 0, 5}, {PROFILE_DEFAULT, 9000, 0, 5}};
+static const struct fit_options USUAL[2] = {{PROFILE_PAPER, 9000, 0, 5}, {PROFILE_SPECTRAL, 9000, 0, 5}};
 static const struct record_source MEASURED = {.bytes = 1, .sha256 = {1}, .nonfinite_count = 3};
 
 /* A record and the table that it decodes to. */
@@ -175,7 +175,7 @@ static void another_request_is_packed_anew(void **state)
 	assert_false(kept(&lattice, "fives", options));
 	assert_true(kept(&lattice, "four", options));
 	assert_false(kept(&lattice, "m", USUAL[0]));
-	options = (struct fit_options){PROFILE_DEFAULT, 100000, 0.01, 5};
+	options = (struct fit_options){PROFILE_SPECTRAL, 100000, 0.01, 5};
 	assert_false(kept(&lattice, "m", options)); /* a smaller record might do */
 	assert_false(kept(&lattice, "no/name", USUAL[1])); /* record_pack says why */
 	lattice_free(&lattice);

@@ -111,14 +111,14 @@ static void a_budget_is_kept_or_the_least_one_is_named(void **state)
 	lattice_free(&lattice);
 }
 
-/* Of the default profile, where there is enough to tell (all there is takes 24,438 bytes): at most 1 % is left over. */
+/* Of the spectral profile, where there is enough to tell (all there is takes 24,438 bytes): at most 1 % is left over. */
 static void a_budget_is_used_to_the_last_hundredth(void **state)
 {
 	struct lattice lattice;
 	uint8_t *record = NULL;
 	size_t bytes;
 	(void)state;
-	if (tested != PROFILE_DEFAULT)
+	if (tested != PROFILE_SPECTRAL)
 		return;
 	lattice_make((struct lattice_dims){ 32, 32, 32 }, 1, &lattice);
 	for (uint32_t budget = 1000; budget < 24000; budget = budget * 13 / 10) {
@@ -146,7 +146,7 @@ static void an_error_can_be_asked_for_instead(void **state)
 	assert_true(head.layers[head.layer_count - 1].fidelity.log_rmse <= least * 1.2);
 	free(record);
 	record = NULL;
-	/* The paper's profile keeps a fixed share of its coefficients; the default one ends where float does. */
+	/* The paper's profile keeps a fixed share of its coefficients; the spectral one ends where float does. */
 	assert_int_equal(pack(&lattice, 0, tested == PROFILE_PAPER ? least * 0.5 : 1e-12, &record, &bytes, &head, &error), BP_ERROR_LIMIT);
 	assert_non_null(strstr(error.message, "the least is"));
 	assert_null(record);
@@ -259,11 +259,11 @@ int main(int argc, char **argv)
 	};
 	if (argc == 3 && strcmp(argv[1], "--write") == 0) {
 		write_all(argv[2]);
-		tested = PROFILE_DEFAULT;
+		tested = PROFILE_SPECTRAL;
 		write_all(argv[2]);
 		return 0;
 	}
 	int failed = cmocka_run_group_tests_name("paper", tests, NULL, NULL);
-	tested = PROFILE_DEFAULT;
-	return failed + cmocka_run_group_tests_name("default", tests, NULL, NULL);
+	tested = PROFILE_SPECTRAL;
+	return failed + cmocka_run_group_tests_name("spectral", tests, NULL, NULL);
 }

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "model/kernels.h"
-#include "model/robust.h"
+#include "model/robust/robust.h"
 #include "robust_oracle.h"
 
 static uint64_t state;

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "model/robust_anchor.h"
+#include "model/robust/robust_anchor.h"
 
 enum { N = 20011 }; /* not a multiple of a block or of a vector */
 static double xs[N], ys[N];

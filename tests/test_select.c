@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "model/select.h"
+#include "model/math/select.h"
 
 static uint64_t state = 3;
 static uint64_t draw(uint64_t below)

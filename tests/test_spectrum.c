@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "model/kernels.h"
-#include "model/spectrum.h"
+#include "model/spectral/spectrum.h"
 #include "random_tables.h"
 
 static float *table_random(struct lattice_dims d)

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "model/kernels.h"
-#include "model/spectrum_inverse.h"
+#include "model/spectral/spectrum_inverse.h"
 #include "random_tables.h"
 
 /* All terms of a spectrum that are not 0, by harmonic. */

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "codec/record.h"
-#include "model/evaluate.h"
+#include "model/table/evaluate.h"
 #include "packed_fixture.h"
 
 static void directions(int n, float wi[3], float wo[3])
@@ -71,7 +71,7 @@ static void a_table_of_a_model_is_that_of_its_expansion(void **state)
 	static const double UNITS[] = {1, 1e7, 1e-5, 1e200};
 	(void)state;
 	for (int n = 0; n < 12; n++)
-		for (int profile = PROFILE_PAPER; profile <= PROFILE_DEFAULT; profile++) {
+		for (int profile = PROFILE_PAPER; profile <= PROFILE_SPECTRAL; profile++) {
 			struct model *model = model_make((enum profile)profile, DIMS[n % 3], UNITS[n / 3]);
 			for (int half = 0; half < 2; half++)
 				for (int channels = 1; channels <= 3; channels += 2)
@@ -83,7 +83,7 @@ static void a_table_of_a_model_is_that_of_its_expansion(void **state)
 
 static void forms_and_channels_that_do_not_exist_are_refused(void **state)
 {
-	struct model *model = model_make(PROFILE_DEFAULT, (struct lattice_dims){8, 8, 8}, 1);
+	struct model *model = model_make(PROFILE_SPECTRAL, (struct lattice_dims){8, 8, 8}, 1);
 	struct table *table = NULL;
 	(void)state;
 	assert_int_equal(table_build_model(model, false, TABLE_EXPANDED, 2, &table, NULL), BP_ERROR_ARGUMENT);

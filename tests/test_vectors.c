@@ -6,7 +6,7 @@
 #include "vectors.h"
 
 #include "vectors_damaged.h"
-#include "vectors_default.h"
+#include "vectors_spectral.h"
 
 /* ---- good ---- */
 
@@ -94,12 +94,12 @@ static const struct vector VECTORS[] = {
 	{ "good-optional-section", BP_OK, "A section of an unknown type with unknown flags, not required: skipped.", make_optional_section },
 	{ "good-dropped-layer", BP_OK, "A record whose last layer was dropped: two layers, bit 2 of left out is clear.", make_dropped_layer },
 	{ "good-minor", BP_OK, "Minor version 1, ignorable flags, and reserved bytes in use.", make_minor },
-	{ "good-default", BP_OK, "The default profile, 16x15x6, cut off in its lowest plane by a budget of 1500 bytes.", make_default },
-	{ "good-default-layers", BP_OK, "The default profile, 17x15x7, two layers.", make_default_layers },
-	{ "good-default-least", BP_OK, "The default profile, 4x4x4, complete.", make_default_least },
-	{ "good-default-bright", BP_OK, "The default profile, values around 1e300.", make_default_bright },
-	{ "good-default-dark", BP_OK, "The default profile, values around 1e-300.", make_default_dark },
-	{ "good-default-zero", BP_OK, "The default profile, every value 0: no plane at all.", make_default_zero },
+	{ "good-spectral", BP_OK, "The spectral profile, 16x15x6, cut off in its lowest plane by a budget of 1500 bytes.", make_spectral },
+	{ "good-spectral-layers", BP_OK, "The spectral profile, 17x15x7, two layers.", make_spectral_layers },
+	{ "good-spectral-least", BP_OK, "The spectral profile, 4x4x4, complete.", make_spectral_least },
+	{ "good-spectral-bright", BP_OK, "The spectral profile, values around 1e300.", make_spectral_bright },
+	{ "good-spectral-dark", BP_OK, "The spectral profile, values around 1e-300.", make_spectral_dark },
+	{ "good-spectral-zero", BP_OK, "The spectral profile, every value 0: no plane at all.", make_spectral_zero },
 	{ "unsupported-major", BP_ERROR_UNSUPPORTED, "Major version 2.", make_major },
 	{ "unsupported-flags", BP_ERROR_UNSUPPORTED, "A required flag in the archive's header.", make_flags },
 	{ "unsupported-record-version", BP_ERROR_UNSUPPORTED, "A record of version 2.", make_record_version },
@@ -140,11 +140,11 @@ static const struct vector VECTORS[] = {
 	{ "bad-slices", BP_ERROR_CORRUPT, "More slices than theta_h has cells.", make_slice_count },
 	{ "bad-section-missing", BP_ERROR_CORRUPT, "No marginals.", make_section_missing },
 	{ "bad-section-twice", BP_ERROR_CORRUPT, "The marginals twice.", make_section_twice },
-	{ "bad-default-planes", BP_ERROR_CORRUPT, "25 bit planes.", make_default_planes },
-	{ "bad-default-unit", BP_ERROR_CORRUPT, "A unit above 2^999.", make_default_unit },
-	{ "bad-default-unit-least", BP_ERROR_CORRUPT, "A unit below 2^-1022.", make_default_unit_least },
-	{ "bad-default-end", BP_ERROR_CORRUPT, "More units than there are planes, fields and harmonics.", make_default_end },
-	{ "bad-default-early", BP_ERROR_CORRUPT, "A stream of planes that is longer than its units.", make_default_early },
+	{ "bad-spectral-planes", BP_ERROR_CORRUPT, "25 bit planes.", make_spectral_planes },
+	{ "bad-spectral-unit", BP_ERROR_CORRUPT, "A unit above 2^999.", make_spectral_unit },
+	{ "bad-spectral-unit-least", BP_ERROR_CORRUPT, "A unit below 2^-1022.", make_spectral_unit_least },
+	{ "bad-spectral-end", BP_ERROR_CORRUPT, "More units than there are planes, fields and harmonics.", make_spectral_end },
+	{ "bad-spectral-early", BP_ERROR_CORRUPT, "A stream of planes that is longer than its units.", make_spectral_early },
 };
 enum { VECTOR_COUNT = sizeof VECTORS / sizeof *VECTORS };
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "model/wavelet.h"
+#include "model/paper/wavelet.h"
 
 static uint64_t state = 3;
 static double uniform(void)

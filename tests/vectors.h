@@ -9,7 +9,7 @@
 
 #include "archive/index.h"
 #include "codec/profile_codec.h"
-#include "model/paper.h"
+#include "model/paper/paper.h"
 
 /* What a reader makes of it: loads (every layer of every material) and verifies. */
 struct vector {

@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 #define ARCHIVE_MAGIC "\x8b" "BPK\r\n\x1a\n"
 #define PAGE_MAGIC "\x8b" "IDX"

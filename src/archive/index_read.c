@@ -1,8 +1,8 @@
 #include <string.h>
 
-#include "../codec/name.h"
-#include "../codec/record.h"
-#include "../error.h"
+#include "name.h"
+#include "codec/record.h"
+#include "error.h"
 #include "index.h"
 
 enum { LEAF_FIXED = 8 + 4 + 4 + 1, INNER_FIXED = 4 + 8 + 1 };

@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 #include "index.h"
 
 void index_add(struct index_builder *builder, const char *name, uint64_t offset, uint32_t record_bytes, uint32_t head_bytes)

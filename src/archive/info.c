@@ -1,7 +1,7 @@
 /* A record's head in the public header's words. */
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 #include "reader.h"
 
 _Static_assert(BP_LAYERS_MAX == (int)LAYERS_MAX, "the public limit of layers");

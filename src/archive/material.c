@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../error.h"
-#include "../model/albedo.h"
-#include "../model/evaluate.h"
-#include "../model/sample.h"
+#include "error.h"
+#include "model/sample/albedo.h"
+#include "model/table/evaluate.h"
+#include "model/sample/sample.h"
 #include "reader.h"
 
 struct bp_material {

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../codec/profile_codec.h"
-#include "../error.h"
+#include "codec/profile_codec.h"
+#include "error.h"
 #include "writer.h"
 
 static uint32_t layers_wanted(const struct record_head *head, double max_log_rmse)

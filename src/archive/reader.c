@@ -7,8 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../codec/name.h"
-#include "../error.h"
+#include "name.h"
+#include "error.h"
 
 struct bp_archive {
 	int fd;

@@ -7,7 +7,7 @@
 #ifndef ARCHIVE_READER_H
 #define ARCHIVE_READER_H
 
-#include "../codec/record.h"
+#include "codec/record.h"
 #include "index.h"
 
 /* Reads exactly count bytes at offset; a file that ends before is BP_ERROR_CORRUPT. */

@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../codec/name.h"
-#include "../codec/record.h"
-#include "../error.h"
+#include "name.h"
+#include "codec/record.h"
+#include "error.h"
 #include "index.h"
 #include "writer.h"
 

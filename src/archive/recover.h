@@ -7,7 +7,7 @@
 #ifndef ARCHIVE_RECOVER_H
 #define ARCHIVE_RECOVER_H
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 struct recovery {
 	uint64_t saved; /* records, each once */

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../error.h"
+#include "error.h"
 
 enum { STEM_BYTES_MAX = 200, TRIES = 1000 };
 

@@ -4,7 +4,7 @@
 #ifndef ARCHIVE_TEMPORARY_H
 #define ARCHIVE_TEMPORARY_H
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 struct temporary_file {
 	char *target; /* the name it will take, links resolved; malloc'ed */

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../codec/name.h"
-#include "../error.h"
+#include "name.h"
+#include "error.h"
 #include "reader.h"
 
 struct walk {

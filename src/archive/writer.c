@@ -5,9 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../codec/name.h"
-#include "../codec/record.h"
-#include "../error.h"
+#include "name.h"
+#include "codec/record.h"
+#include "error.h"
 #include "index.h"
 #include "temporary.h"
 

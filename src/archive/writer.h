@@ -8,7 +8,7 @@
 #ifndef ARCHIVE_WRITER_H
 #define ARCHIVE_WRITER_H
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 struct archive_writer;
 

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 
 bp_status corner_tables_alloc(struct lattice_dims dims, struct corner_tables *out, bp_error *error)
 {

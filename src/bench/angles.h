@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#include "../merl/lattice.h"
+#include "merl/lattice.h"
 
 /* What the analytic models look at. */
 struct cell_angles {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 #include "angles.h"
 #include "baseline.h"
 

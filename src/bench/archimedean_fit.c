@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 #include "archimedean.h"
 #include "lobe_sample.h"
 #include "log_tensor.h"

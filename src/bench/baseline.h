@@ -10,7 +10,7 @@
 #ifndef BENCH_BASELINE_H
 #define BENCH_BASELINE_H
 
-#include "../merl/lattice.h"
+#include "merl/lattice.h"
 
 /* One measured material as the benchmark holds it. */
 struct bench_material {
@@ -51,7 +51,7 @@ struct baseline {
 };
 
 /* This project's own profiles. */
-extern const struct baseline BASELINE_PAPER, BASELINE_DEFAULT;
+extern const struct baseline BASELINE_PAPER, BASELINE_SPECTRAL;
 /* The analytic models: no budget, tens of bytes. */
 extern const struct baseline BASELINE_WARD, BASELINE_COOK_TORRANCE, BASELINE_EDWARDS;
 /* Data-driven models of the paper's authors. */

@@ -18,7 +18,7 @@ import time
 
 import bench_head
 
-PROFILES = ("default", "paper")
+PROFILES = ("spectral", "paper")
 
 
 def seconds_to_read(path):

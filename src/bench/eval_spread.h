@@ -2,7 +2,7 @@
 #ifndef BENCH_EVAL_SPREAD_H
 #define BENCH_EVAL_SPREAD_H
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 /*
  * Prints one row: name, mean deviation over angles by our sampling, cosine sampling and a fitted GGX lobe with cosine, the lobe's

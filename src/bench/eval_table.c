@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../merl/merl_file.h"
+#include "merl/merl_file.h"
 #include "eval_timing.h"
 
 static const struct {

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "../merl/merl_file.h"
-#include "../model/direction.h"
+#include "merl/merl_file.h"
+#include "model/table/direction.h"
 #include "rivals.h"
 #include "timing.h"
 

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 #include "inputs.h"
 
 /* Each direction is paired with eight others, so that the pairs are many and what they are made from stays in the cache, as a renderer's does. */

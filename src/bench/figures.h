@@ -5,8 +5,8 @@
 #ifndef BENCH_FIGURES_H
 #define BENCH_FIGURES_H
 
-#include "../model/fidelity.h"
-#include "../render/metrics.h"
+#include "model/fidelity.h"
+#include "render/metrics.h"
 
 struct figures {
 	struct psnr psnr[LIGHTING_COUNT];

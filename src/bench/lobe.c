@@ -4,7 +4,7 @@
 #include <gsl/gsl_multimin.h>
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 #include "lobe_sample.h"
 
 enum { STARTS_KEPT = 3, ITERATIONS_MAX = 300, SAMPLES_D = 30, SAMPLES_P = 30, THIN = 3 };

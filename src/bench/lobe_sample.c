@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 
 /* cos 80 degrees: Ngan et al. leave out what lies beyond, where measurements are unreliable. */
 static const double COSINE_LIMIT = 0.17364817766693036;

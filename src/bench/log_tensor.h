@@ -5,7 +5,7 @@
 #ifndef BENCH_LOG_TENSOR_H
 #define BENCH_LOG_TENSOR_H
 
-#include "../merl/lattice.h"
+#include "merl/lattice.h"
 
 /* Added before the logarithm, 1/sr: the metrics' own offset. */
 #define LOG_OFFSET 1e-3

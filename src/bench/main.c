@@ -87,9 +87,9 @@ static void usage(FILE *out)
 	        "  -o FILE   where the table goes (standard output)\n"
 	        "  -l TEXT   what the data are, for the table's head\n"
 	        "  -n FILE   only the materials named there, one per line\n"
-	        "  -m LIST   only these methods, with commas: paper,default,ward,...\n"
+	        "  -m LIST   only these methods, with commas: paper,spectral,ward,...\n"
 	        "  -b LIST   budgets in bytes, with commas (4000,8000,16000,30000,60400,120000)\n"
-	        "  -e LIST   efforts of the default profile at 60400 bytes, with commas (1,2,...,9)\n"
+	        "  -e LIST   efforts of the spectral profile at 60400 bytes, with commas (1,2,...,9)\n"
 	        "  -t FOLDER figures against the tables of the same names there, not against the inputs\n"
 	        "  -q        quick: three materials, spread over the list, three efforts; every fit once\n"
 	        "  -j N      processes (1: times are least disturbed)\n");

@@ -6,8 +6,8 @@
 
 const struct method METHODS[METHOD_COUNT] = {
 	{"paper", &BASELINE_PAPER, false},
-	{"default", &BASELINE_DEFAULT, false},
-	{"default-effort", &BASELINE_DEFAULT, true},
+	{"spectral", &BASELINE_SPECTRAL, false},
+	{"spectral-effort", &BASELINE_SPECTRAL, true},
 	{"ward", &BASELINE_WARD, false},
 	{"cook-torrance", &BASELINE_COOK_TORRANCE, false},
 	{"edwards", &BASELINE_EDWARDS, false},

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../codec/record.h"
-#include "../error.h"
-#include "../model/evaluate.h"
+#include "codec/record.h"
+#include "error.h"
+#include "model/table/evaluate.h"
 #include "baseline.h"
 
 struct profile_state {
@@ -56,14 +56,14 @@ static bp_status paper_fit(const struct bench_material *material, size_t budget_
 	return fit_profile(PROFILE_PAPER, material, budget_bytes, EFFORT_USUAL, state, error);
 }
 
-static bp_status default_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+static bp_status spectral_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
 {
-	return fit_profile(PROFILE_DEFAULT, material, budget_bytes, EFFORT_USUAL, state, error);
+	return fit_profile(PROFILE_SPECTRAL, material, budget_bytes, EFFORT_USUAL, state, error);
 }
 
-static bp_status default_fit_effort(const struct bench_material *material, size_t budget_bytes, int effort, void **state, bp_error *error)
+static bp_status spectral_fit_effort(const struct bench_material *material, size_t budget_bytes, int effort, void **state, bp_error *error)
 {
-	return fit_profile(PROFILE_DEFAULT, material, budget_bytes, effort, state, error);
+	return fit_profile(PROFILE_SPECTRAL, material, budget_bytes, effort, state, error);
 }
 
 static size_t profile_bytes(const void *state)
@@ -123,12 +123,12 @@ const struct baseline BASELINE_PAPER = {
 	.free_state = profile_free,
 };
 
-const struct baseline BASELINE_DEFAULT = {
-	.name = "default",
-	.reference = "this project, the default profile",
+const struct baseline BASELINE_SPECTRAL = {
+	.name = "spectral",
+	.reference = "this project, the spectral profile",
 	.budgeted = true,
-	.fit = default_fit,
-	.fit_effort = default_fit_effort,
+	.fit = spectral_fit,
+	.fit_effort = spectral_fit_effort,
 	.bytes = profile_bytes,
 	.parameters = profile_parameters,
 	.expand = profile_expand,

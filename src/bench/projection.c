@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 
 /*
  * The leading `rank` eigenvectors of a symmetric positive matrix, largest first. gram[extent][extent] is

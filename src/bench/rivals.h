@@ -6,7 +6,7 @@
 #ifndef BENCH_RIVALS_H
 #define BENCH_RIVALS_H
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 struct ggx_mixture {
 	double roughness; /* alpha */

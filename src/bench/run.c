@@ -6,8 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../error.h"
-#include "../merl/merl_file.h"
+#include "error.h"
+#include "merl/merl_file.h"
 #include "timing.h"
 
 /* Work that takes less than this is repeated and its median taken. */

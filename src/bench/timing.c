@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../error.h"
+#include "error.h"
 #include "angles.h"
 
 enum { REPEATS_MAX = 16, READ_BYTES = 128 * 1024 };

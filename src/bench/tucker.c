@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 #include "angles.h"
 #include "baseline.h"
 #include "projection.h"

@@ -10,7 +10,7 @@
 
 #include <zfp.h>
 
-#include "../error.h"
+#include "error.h"
 #include "baseline.h"
 #include "log_tensor.h"
 

@@ -1,6 +1,6 @@
 #include "profile_codec.h"
 
-static const struct profile_codec *const CODECS[] = { &PAPER_CODEC, &DEFAULT_CODEC };
+static const struct profile_codec *const CODECS[] = { &PAPER_CODEC, &SPECTRAL_CODEC };
 
 const struct profile_codec *profile_codec_find(enum profile profile)
 {

@@ -52,7 +52,7 @@ const struct profile_codec *profile_codec_find(enum profile profile);
 
 /* paper_sections.c */
 extern const struct profile_codec PAPER_CODEC;
-/* default_sections.c */
-extern const struct profile_codec DEFAULT_CODEC;
+/* spectral_sections.c */
+extern const struct profile_codec SPECTRAL_CODEC;
 
 #endif

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 #include "profile_codec.h"
 
 static bool kind_known(const struct profile_codec *codec, const struct record_section *entry)

@@ -7,7 +7,7 @@
 #ifndef CODEC_RECORD_H
 #define CODEC_RECORD_H
 
-#include "../model/model.h"
+#include "model/model.h"
 
 enum { RECORD_NAME_BYTES_MAX = 255, RECORD_SECTIONS_MAX = 64, SHA256_BYTES = 32 };
 
@@ -24,7 +24,7 @@ enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 1 };
 /* In place of a codec version: no encoder made this record as it is, so no rebuild takes it for what it would make. */
 enum { RECORD_LAYERS_DROPPED = 0 };
 
-/* Types of section; 1..15 belong to the paper's profile, 16..31 to the default one. */
+/* Types of section; 1..15 belong to the paper's profile, 16..31 to the spectral one. */
 enum section_type {
 	SECTION_MARGINALS = 1, /* scale and the three marginals */
 	SECTION_PAIR_HD = 2,   /* c_hd */

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
-#include "../merl/merl_file.h"
-#include "../stage.h"
+#include "error.h"
+#include "merl/merl_file.h"
+#include "stage.h"
 #include "name.h"
 
 /* What can be told from its head alone. */

@@ -1,7 +1,7 @@
 /* Records made from whole records: their sections byte for byte, under another head. */
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 #include "name.h"
 #include "section.h"
 

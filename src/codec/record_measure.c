@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#include "../model/fidelity.h"
-#include "../stage.h"
+#include "model/fidelity.h"
+#include "stage.h"
 
 /* Layers that are measured in one pass over the measured table: what the previews of a usual budget and the whole are. */
 enum { MEASURED_AT_ONCE = 3, MEASURED_CELLS_MAX = 1 << 22 };

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
-#include "../model/fast_math.h"
-#include "../stage.h"
+#include "error.h"
+#include "model/math/fast_math.h"
+#include "stage.h"
 #include "name.h"
 #include "profile_codec.h"
 #include "record_measure.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 #include "name.h"
 
 struct byte_buffer *section_add(struct section_list *list, enum section_type type, uint16_t codec, uint16_t version,

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../error.h"
+#include "error.h"
 
 enum { BLOCK_BYTES = 1 << 18, FAILURES_MAX = 1000 };
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 
 struct demo_material {
 	const char *name, *kind;

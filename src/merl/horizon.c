@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 #include "lattice.h"
 
 void quarter_cos_sin(double t, double *cosine, double *sine)

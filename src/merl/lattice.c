@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
-#include "../memory.h"
+#include "error.h"
+#include "memory.h"
 
 const struct lattice_dims LATTICE_MERL = {90, 90, 180};
 const double MERL_SCALE[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};

@@ -29,7 +29,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 enum { LATTICE_EXTENT_MIN = 4, LATTICE_EXTENT_MAX = 1024, LATTICE_CELLS_MAX = 1 << 24 };
 

@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../error.h"
-#include "../output_file.h"
+#include "error.h"
+#include "output_file.h"
 #include "carried.h"
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "MERL files are little-endian; a big-endian machine needs a swap here");

@@ -8,8 +8,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../codec/name.h"
-#include "../error.h"
+#include "name.h"
+#include "error.h"
 #include "source_kind.h"
 
 enum { DEPTH_MAX = 1000 };

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 #include "kernels.h"
 
 /* Adds slice i of all tables to their totals. */

@@ -1,5 +1,5 @@
 /* fidelity.inc.h: the sums of fidelity.h. See kernels.h. */
-#include "fast_math.h"
+#include "model/math/fast_math.h"
 
 enum { FIDELITY_BLOCK = 64 };
 

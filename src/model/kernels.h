@@ -153,22 +153,22 @@ struct kernels {
 	void (*cdf97_plane)(float *plane, size_t rows, size_t columns, unsigned levels, int half);
 
 	/* out = log2(1 + factor b) where valid, else 0; returns their sum. */
-	double (*default_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out);
+	double (*spectral_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out);
 	/* The largest valid b; 0 where none is above 0. */
-	double (*default_largest)(const double *b, const uint8_t *valid, size_t n);
+	double (*spectral_largest)(const double *b, const uint8_t *valid, size_t n);
 	/* Adds w x_i x_j with w = 1/(1 + x_0^2 + x_1^2 + x_2^2) to sums, ij = 00, 01, 02, 11, 12, 22. */
-	void (*default_moments)(const float *const x[3], size_t n, double sums[6]);
+	void (*spectral_moments)(const float *const x[3], size_t n, double sums[6]);
 	/*
 	 * rgb_c = max(0, 2^l - 1) with l = min(most, base[c] + sum over f of rotation[f][c] field_f), for `rows` rows of `width`
 	 * cells, `stride` apart in the fields (where it is 16, of at most 16 cells) and rgb_stride apart in rgb.
 	 */
-	void (*default_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
+	void (*spectral_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
 	                       const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride);
 	/*
 	 * The same as 16-bit floats of table.h's expanded form, in units of 2^39 (that of l = 40 is 65535): `channels` of them for
 	 * every cell, or 1, the channels' mean; rows of `width` cells are out_stride codes apart.
 	 */
-	void (*default_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
+	void (*spectral_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
 	                      const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride);
 	/*
 	 * A row of values in the compact form, its first block at `block`, but for the shares' codes: three of R and three of B for every block
@@ -176,18 +176,18 @@ struct kernels {
 	 */
 	void (*compact_row)(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block, float *const knots[2]);
 	/* field_f = sum over c of rotation[f][c] x_c, in place. */
-	void (*default_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
+	void (*spectral_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
 	/*
 	 * A piece of a row of the fill: where filled = 1, a cell becomes the weighted mean of its six neighbours (phi_d counts four times:
 	 * along it the field is smoothest, and its basis has the fewest coefficients); where it is 0, it stays. Along phi_d the
 	 * neighbours are the old values, with one before and one after the piece.
 	 */
-	void (*default_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after);
+	void (*spectral_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after);
 	/*
 	 * x_q times max(0, 1 - threshold factor_q / e_q), e being the sum of the squares of the 3 x 3 coefficients around and, half as much
 	 * each, of the lanes before and after. square[r] + q + s stride: those of row r - 1 and column s - 1.
 	 */
-	void (*default_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold, size_t n);
+	void (*spectral_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold, size_t n);
 };
 
 /* The table for this processor. Thread-safe; never NULL. */

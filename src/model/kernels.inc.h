@@ -1,18 +1,18 @@
 /* kernels.inc.h: all loops of kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
 #include "kernels.h"
-#include "vector.h"
+#include "model/math/vector.h"
 
-#include "density.inc.h"
+#include "model/paper/density.inc.h"
 #include "fidelity.inc.h"
-#include "fill.inc.h"
-#include "paper.inc.h"
-#include "robust.inc.h"
-#include "robust_anchor.inc.h"
-#include "spectrum.inc.h"
-#include "cosines.inc.h"
-#include "spectrum_inverse.inc.h"
-#include "default.inc.h"
-#include "compact_row.inc.h"
+#include "model/math/fill_kernels.inc.h"
+#include "model/paper/paper.inc.h"
+#include "model/robust/robust_sums.inc.h"
+#include "model/robust/robust_anchor.inc.h"
+#include "model/spectral/spectrum.inc.h"
+#include "model/spectral/cosines.inc.h"
+#include "model/spectral/spectrum_inverse.inc.h"
+#include "model/spectral/spectral_values.inc.h"
+#include "model/table/compact_row.inc.h"
 
 const struct kernels KERNEL(kernels) = {
 	.density_row = KERNEL(density_row),
@@ -35,12 +35,12 @@ const struct kernels KERNEL(kernels) = {
 	.cdf97_plane = KERNEL(cdf97_plane),
 	.spectrum_spread = KERNEL(spectrum_spread),
 	.compact_row = KERNEL(compact_row),
-	.default_logs = KERNEL(default_logs),
-	.default_largest = KERNEL(default_largest),
-	.default_moments = KERNEL(default_moments),
-	.default_values = KERNEL(default_values),
-	.default_codes = KERNEL(default_codes),
-	.default_rotate = KERNEL(default_rotate),
-	.default_smooth = KERNEL(default_smooth),
-	.default_shrink = KERNEL(default_shrink),
+	.spectral_logs = KERNEL(spectral_logs),
+	.spectral_largest = KERNEL(spectral_largest),
+	.spectral_moments = KERNEL(spectral_moments),
+	.spectral_values = KERNEL(spectral_values),
+	.spectral_codes = KERNEL(spectral_codes),
+	.spectral_rotate = KERNEL(spectral_rotate),
+	.spectral_smooth = KERNEL(spectral_smooth),
+	.spectral_shrink = KERNEL(spectral_shrink),
 };

@@ -3,10 +3,10 @@
 
 #include <stdlib.h>
 
-#include "../error.h"
-#include "../stage.h"
-#include "default_model.h"
-#include "paper.h"
+#include "error.h"
+#include "stage.h"
+#include "model/spectral/spectral.h"
+#include "model/paper/paper.h"
 
 bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error)
 {
@@ -28,8 +28,8 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 	case PROFILE_PAPER:
 		status = paper_fit(lattice, options, model, error);
 		break;
-	case PROFILE_DEFAULT:
-		status = default_fit(lattice, options, model, error);
+	case PROFILE_SPECTRAL:
+		status = spectral_fit(lattice, options, model, error);
 		break;
 	default:
 		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
@@ -47,7 +47,7 @@ void model_free(struct model *model)
 	if (!model)
 		return;
 	paper_free(model->paper);
-	default_free(model->log_density);
+	spectral_free(model->spectral);
 	free(model);
 }
 
@@ -63,8 +63,8 @@ bp_status model_expand(const struct model *model, uint32_t layers, struct expans
 	switch (model->profile) {
 	case PROFILE_PAPER:
 		return paper_expand(model, layers, out, error);
-	case PROFILE_DEFAULT:
-		return default_expand(model, layers, out, error);
+	case PROFILE_SPECTRAL:
+		return spectral_expand(model, layers, out, error);
 	default:
 		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)model->profile);
 	}

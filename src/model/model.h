@@ -9,9 +9,9 @@
 #ifndef MODEL_MODEL_H
 #define MODEL_MODEL_H
 
-#include "../merl/lattice.h"
+#include "merl/lattice.h"
 
-enum profile { PROFILE_PAPER = 1, PROFILE_DEFAULT = 2 };
+enum profile { PROFILE_PAPER = 1, PROFILE_SPECTRAL = 2 };
 enum { LAYERS_MAX = 16 };
 
 struct fit_options {
@@ -38,7 +38,7 @@ struct fidelity {
 };
 
 struct paper_model;   /* paper.h */
-struct default_model; /* of the default profile */
+struct spectral_model; /* of the spectral profile */
 
 struct model {
 	enum profile profile;
@@ -47,7 +47,7 @@ struct model {
 	struct colour_fit colour[3];
 	uint32_t layer_count; /* 1..LAYERS_MAX; a decoded model has as many as were loaded */
 	struct paper_model *paper;                   /* PROFILE_PAPER, else NULL */
-	struct default_model *log_density;           /* PROFILE_DEFAULT, else NULL */
+	struct spectral_model *spectral;           /* PROFILE_SPECTRAL, else NULL */
 };
 
 bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error);

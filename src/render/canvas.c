@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
-#include "../memory_stream.h"
+#include "error.h"
+#include "memory_stream.h"
 #include "font.h"
 
 struct canvas {

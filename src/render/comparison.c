@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 
 static bool dims_equal(struct lattice_dims a, struct lattice_dims b)
 {

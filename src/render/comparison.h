@@ -4,7 +4,7 @@
 #ifndef RENDER_COMPARISON_H
 #define RENDER_COMPARISON_H
 
-#include "../model/fidelity.h"
+#include "model/fidelity.h"
 #include "metrics.h"
 
 /* Bit 1 << lighting for each lighting that is wanted. */

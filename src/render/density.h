@@ -4,7 +4,7 @@
 #ifndef RENDER_DENSITY_H
 #define RENDER_DENSITY_H
 
-#include "../model/model.h"
+#include "model/model.h"
 
 /* Planes of 1/sr over a lattice, and which cells count. */
 struct density_source {

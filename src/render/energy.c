@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 
 enum { THETA_STEPS = 180, PHI_STEPS = 90, PLACES_MAX = THETA_STEPS * PHI_STEPS };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 
 static const struct colour BLACK = {0, 0, 0}, GREY = {225, 225, 225}, DIM = {90, 90, 90};
 static const struct colour BEFORE = {31, 119, 180}, AFTER = {214, 39, 40};
@@ -177,8 +177,8 @@ static void scale_draw(struct canvas *canvas, double x, double y)
 	enum { STEPS = 90, WIDTH = 18 };
 	char text[16];
 	for (int s = 0; s < STEPS; s++) {
-		double log_density = SPAN - 2 * SPAN * (s + 0.5) / STEPS;
-		canvas_rectangle(canvas, x, y + 2 * s, WIDTH, 2, density_colour(exp2(log_density)));
+		double spectral = SPAN - 2 * SPAN * (s + 0.5) / STEPS;
+		canvas_rectangle(canvas, x, y + 2 * s, WIDTH, 2, density_colour(exp2(spectral)));
 	}
 	frame_draw(canvas, x, y, WIDTH, 2 * STEPS);
 	for (int t = -2; t <= 2; t++) {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../error.h"
+#include "error.h"
 
 static int ascending(const void *a, const void *b)
 {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 
 static bp_status table_alloc(struct lattice_dims dims, double unit, struct lookup_table *out, bp_error *error)
 {

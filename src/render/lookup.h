@@ -12,7 +12,7 @@
 #ifndef RENDER_LOOKUP_H
 #define RENDER_LOOKUP_H
 
-#include "../merl/lattice.h"
+#include "merl/lattice.h"
 
 /*
  * One material. Cells are stored [theta_d][theta_h][phi_d] with one more of each, so that the upper neighbour

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
-#include "../output_file.h"
+#include "error.h"
+#include "output_file.h"
 
 bp_status picture_alloc(uint32_t width, uint32_t height, struct picture *out, bp_error *error)
 {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
+#include "error.h"
 
 static const double COVERED_BELOW = 0.99, COSINE_ABOVE = 1e-3;
 enum { BAND_PLACES = 6000000 };

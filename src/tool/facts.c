@@ -7,14 +7,15 @@ const char *const PAIR_NAMES[3] = {"c_hd", "c_hphi", "c_dphi|h"};
 
 const char *profile_name(enum profile profile)
 {
-	return profile == PROFILE_PAPER ? "paper" : profile == PROFILE_DEFAULT ? "default" : "unknown";
+	return profile == PROFILE_PAPER ? "paper" : profile == PROFILE_SPECTRAL ? "spectral" : "unknown";
 }
 
 bool profile_parse(const char *text, enum profile *out)
 {
-	if (strcmp(text, "paper") != 0 && strcmp(text, "default") != 0)
+	const bool paper = !strcmp(text, "paper");
+	if (!paper && strcmp(text, "spectral") != 0 && strcmp(text, "default") != 0) /* "default": the name before version 0.2 */
 		return false;
-	*out = text[0] == 'p' ? PROFILE_PAPER : PROFILE_DEFAULT;
+	*out = paper ? PROFILE_PAPER : PROFILE_SPECTRAL;
 	return true;
 }
 

@@ -4,7 +4,7 @@
 #ifndef TOOL_FACTS_H
 #define TOOL_FACTS_H
 
-#include "../codec/record.h"
+#include "codec/record.h"
 #include "json.h"
 
 const char *profile_name(enum profile profile); /* as --profile takes it; "unknown" for others */

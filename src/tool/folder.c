@@ -1,6 +1,6 @@
 #include "folder.h"
 
-#include "../error.h"
+#include "error.h"
 #include "report.h"
 
 #include <errno.h>

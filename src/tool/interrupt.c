@@ -1,6 +1,6 @@
 #include "interrupt.h"
 
-#include "../error.h"
+#include "error.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -4,7 +4,7 @@
 #ifndef TOOL_INTERRUPT_H
 #define TOOL_INTERRUPT_H
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 /* From now on SIGINT, SIGTERM and SIGHUP are noted. *wake_fd becomes readable with the first. */
 bp_status interrupt_install(int *wake_fd, bp_error *error);

@@ -5,7 +5,7 @@
 #include "command.h"
 #include "report.h"
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../error.h"
-#include "../merl/merl_file.h"
-#include "../merl/source_kind.h"
+#include "error.h"
+#include "merl/merl_file.h"
+#include "merl/source_kind.h"
 #include "report.h"
 #include "selection.h"
 

@@ -4,7 +4,7 @@
 #ifndef TOOL_MATERIAL_H
 #define TOOL_MATERIAL_H
 
-#include "../archive/reader.h"
+#include "archive/reader.h"
 #include "command.h"
 
 struct material {

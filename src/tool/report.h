@@ -9,7 +9,7 @@
 #ifndef TOOL_REPORT_H
 #define TOOL_REPORT_H
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 #include "command.h"
 
 /* "brdfpack: " and a formatted line. */

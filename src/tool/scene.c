@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../codec/name.h"
-#include "../error.h"
+#include "name.h"
+#include "error.h"
 
 static bp_status word_add(struct scene_words *words, const char *text, size_t bytes, bp_error *error)
 {

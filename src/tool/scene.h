@@ -10,7 +10,7 @@
 
 #include <stddef.h>
 
-#include "../brdfpack.h"
+#include "brdfpack.h"
 
 /* Words of all the files that were added; zeroed to begin with. */
 struct scene_words {

@@ -1,7 +1,7 @@
 #include "selection.h"
 
-#include "../error.h"
-#include "../merl/spelling.h"
+#include "error.h"
+#include "merl/spelling.h"
 #include "report.h"
 
 #include <stdio.h>

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../archive/reader.h"
+#include "archive/reader.h"
 #include "command.h"
 
 /* An open archive and the materials that were asked for. */

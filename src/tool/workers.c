@@ -4,7 +4,7 @@
  */
 #include "workers.h"
 
-#include "../error.h"
+#include "error.h"
 #include "worker_process.h"
 
 #include <errno.h>

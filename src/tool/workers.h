@@ -11,8 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../brdfpack.h"
-#include "../stage.h"
+#include "brdfpack.h"
+#include "stage.h"
 
 enum { WORKERS_MAX = 256, WORKER_RECORD_BYTES_MAX = 1 << 24, WORKER_NAME_BYTES_MAX = 255 };
 

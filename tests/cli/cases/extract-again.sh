@@ -2,7 +2,7 @@
 brdfpack synth --lattice 24x20x36 all
 mkdir in && mv all/terracotta.binary all/wine-velvet.binary in
 kept() { tail -n 1 | grep -o '"kept": [0-9]*'; }
-for profile in paper default; do
+for profile in paper spectral; do
 	cp -r in 0
 	for n in 1 2 3; do
 		build --profile $profile --budget 9000 --json -o $n.bpk $((n - 1)) | kept

@@ -3,5 +3,5 @@ fixture alpha
 build --profile paper -o out.bpk .
 brdfpack list out.bpk alpha | sed -E '/SHA-256/!s/-?[0-9][0-9.e+-]*/N/g; s/  +/ /g'
 sha256sum alpha.binary
-build -o default.bpk .
-brdfpack list default.bpk alpha | grep -E 'profile|layer|section' | sed -E 's/-?[0-9][0-9.e+-]*/N/g; s/  +/ /g'
+build -o spectral.bpk .
+brdfpack list spectral.bpk alpha | grep -E 'profile|layer|section' | sed -E 's/-?[0-9][0-9.e+-]*/N/g; s/  +/ /g'

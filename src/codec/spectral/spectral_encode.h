@@ -1,0 +1,30 @@
+/*
+ * spectral_encode.h: bit planes of a fitted model within a budget, in layers.
+ *
+ * The budget is met in two ways. A step is sought whose planes take a little more than there is room for, then the lowest
+ * plane is cut off at a harmonic. Either alone would do; together they need one or two attempts and waste next to nothing.
+ */
+#ifndef CODEC_SPECTRAL_SPECTRAL_ENCODE_H
+#define CODEC_SPECTRAL_SPECTRAL_ENCODE_H
+
+#include "spectral_planes.h"
+
+struct encoding {
+	/* Set before encoding_make: */
+	const struct spectral_model *model;
+	struct planes *planes;       /* for encoding, of the model's extents */
+	uint64_t head_bytes;         /* of the record, without any bit planes */
+	uint32_t layers;
+	uint32_t limit[LAYERS_MAX];  /* record bytes at the end of every layer; the last is the budget */
+	/* What it leaves: */
+	float step, centre[2];
+	struct byte_buffer stream[LAYERS_MAX]; /* the contents of the sections */
+	uint32_t end[LAYERS_MAX];    /* the unit before which a layer ends */
+	uint64_t bytes;              /* of the record */
+};
+
+/* effort: 1..9. Free it by encoding_clear in any case. */
+bp_status encoding_make(struct encoding *encoding, int effort, bp_error *error);
+void encoding_clear(struct encoding *encoding); /* the streams alone */
+
+#endif

@@ -1,0 +1,141 @@
+/* spectral_levels.c: coefficients into planes, and levels out of them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "spectral_planes.h"
+
+/* Sixteen lanes at once: is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
+static inline int any_above(const float *x, uint32_t least_bits)
+{
+	uint32_t any = 0, bits[16];
+	memcpy(bits, x, sizeof bits);
+	for (int q = 0; q < 16; q++)
+		any |= (uint32_t)((int32_t)(bits[q] & 0x7fffffff) >= (int32_t)least_bits);
+	return any != 0;
+}
+
+/* The block of a coefficient of `band` that has a level; it gets a place in the pool where it has none. */
+static struct level_block *level_block_at(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x)
+{
+	const size_t at = (size_t)(harmonic + 2) * p->bands.blocks + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
+	uint32_t *slot = &p->level_slot[field][at];
+
+	if (!*slot) {
+		*slot = p->levels_count++;
+		memset(&p->levels[*slot], 0, sizeof *p->levels);
+	}
+	return &p->levels[*slot];
+}
+
+static uint32_t place_in_block(uint32_t y, uint32_t x)
+{
+	return y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
+}
+
+/* The coefficient's level, where it is not 0, in its block. */
+static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, float coefficient,
+                        float inverse, float rounding)
+{
+	const uint32_t place = place_in_block(y, x), most = (1u << SPECTRAL_PLANES_MAX) - 1;
+	const float size = fabsf(coefficient) * inverse;
+	uint32_t level = (uint32_t)(size + rounding);
+
+	if (!level)
+		return;
+	level = level < most ? level : most;
+	struct level_block *block = level_block_at(p, field, harmonic, band, y, x);
+	block->level[place] = coefficient < 0 ? -(int32_t)level : (int32_t)level;
+	block->over[place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
+}
+
+static void levels_clear(struct planes *p)
+{
+	p->levels_count = 1;
+	for (int f = 0; f < 3; f++)
+		memset(p->level_slot[f], 0, (size_t)(p->dims.phi_d + 4) * p->bands.blocks * sizeof *p->level_slot[f]);
+}
+
+void planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding)
+{
+	const uint32_t lanes = p->dims.phi_d;
+	const float least = (1 - rounding) * step * 0.999f, inverse = 1 / step;
+	uint32_t least_bits;
+
+	memcpy(&least_bits, &least, sizeof least_bits);
+	levels_clear(p);
+	for (uint32_t f = 0; f < 3; f++)
+		for (uint32_t b = 0; b < p->bands.count; b++) {
+			const struct band *band = &p->bands.band[b];
+			for (uint32_t y = 0; y < band->rows; y++)
+				for (uint32_t x = 0; x < band->columns; x++) {
+					const float *row = coefficient[f] + ((size_t)(band->row + y) * p->dims.theta_d + band->column + x) * lanes;
+					for (uint32_t lane = 0; lane < lanes; lane++) {
+						if (lane % 16 == 0 && lane + 16 <= lanes && !any_above(row + lane, least_bits)) {
+							lane += 15;
+							continue;
+						}
+						level_place(p, f, spectrum_harmonic(lanes, lane), band, y, x, row[lane], inverse, rounding);
+					}
+				}
+		}
+}
+
+/* Counts the levels of one band of one harmonic and stores the first `room` of them. */
+static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t harmonic, uint32_t lowest, uint32_t b,
+                             struct spectral_level *out, uint32_t room)
+{
+	const struct band *band = &p->bands.band[b];
+	const uint32_t *slot = p->slot[field] + (size_t)(harmonic + 2) * p->bands.blocks + band->block_at;
+	const size_t field0 = field * lattice_cells(p->dims) + spectrum_lane(p->dims.phi_d, harmonic);
+	uint32_t n = 0;
+
+	if (!(p->bands_active[field][harmonic + 2] >> b & 1))
+		return 0;
+	for (uint32_t by = 0; by < band->block_rows; by++)
+		for (uint32_t bx = 0; bx < band->block_columns; bx++) {
+			const uint32_t place = slot[by * band->block_stride + bx];
+			const struct plane_block *block = &p->pool[place];
+			for (uint32_t y = 0; place && y < BLOCK_EDGE; y++) {
+				const size_t row = (size_t)(band->row + by * BLOCK_EDGE + y) * p->dims.theta_d + band->column + bx * BLOCK_EDGE;
+				uint64_t any;
+				memcpy(&any, block->sign + y * BLOCK_EDGE, sizeof any);
+				for (uint32_t x = 0; any && x < BLOCK_EDGE; x++) {
+					const uint32_t k = y * BLOCK_EDGE + x;
+					const int32_t size = (int32_t)(block->known[k] >> 2 >> lowest << lowest);
+					if (!size)
+						continue;
+					if (n < room)
+						out[n] = (struct spectral_level){.at = (uint32_t)(field0 + (row + x) * p->dims.phi_d), .level = block->sign[k] == 2 ? -size : size};
+					n++;
+				}
+			}
+		}
+	return n;
+}
+
+bp_status planes_collect(const struct planes *p, uint32_t end, struct spectral_level **out, uint32_t *count, bp_error *error)
+{
+	struct spectral_level *levels = NULL;
+	uint32_t n = 0, room = 0;
+
+	for (uint32_t f = 0; f < 3; f++)
+		for (uint32_t m = 0; m < p->dims.phi_d; m++) {
+			const uint32_t lowest = spectral_lowest_plane(p->planes, p->dims.phi_d, end, f, m);
+			if (room - n < p->dims.theta_h * p->dims.theta_d) {
+				room = room * 2 + p->dims.theta_h * p->dims.theta_d;
+				struct spectral_level *larger = realloc(levels, room * sizeof *levels);
+				if (!larger) {
+					free(levels);
+					return error_memory(error, room * sizeof *levels);
+				}
+				levels = larger;
+			}
+			for (uint32_t b = 0; b < p->bands.count; b++)
+				n += band_collect(p, f, m, lowest, b, levels + n, room - n);
+		}
+	*out = levels;
+	*count = n;
+	return BP_OK;
+}

@@ -1,0 +1,33 @@
+/*
+ * vector.h: lanes for sums in a fixed order. Only for the .inc.h files of kernels.h.
+ *
+ * A lanes4 is four doubles that add independently, whatever the processor's vectors are; lanes_sum joins
+ * them in one order. gcc and clang split the type into what the target has. Vectors are passed by pointer:
+ * by value their calling convention depends on the target.
+ */
+#ifndef MODEL_MATH_VECTOR_H
+#define MODEL_MATH_VECTOR_H
+
+#include <stdint.h>
+
+typedef double lanes4 __attribute__((vector_size(32)));
+typedef int64_t mask4 __attribute__((vector_size(32)));
+typedef double lanes4_unaligned __attribute__((vector_size(32), aligned(8), may_alias));
+
+typedef float floats4 __attribute__((vector_size(16)));
+typedef float floats4_unaligned __attribute__((vector_size(16), aligned(4), may_alias));
+
+/* Four doubles at p, which need not be aligned. */
+#define LANES_LOAD(p) ((lanes4)(*(const lanes4_unaligned *)(p)))
+#define LANES_STORE(p, v) (*(lanes4_unaligned *)(p) = (v))
+#define FLOATS_LOAD(p) ((floats4)(*(const floats4_unaligned *)(p)))
+/* The mask is all ones where it is true. */
+#define LANES_SELECT(mask, yes, no) ((lanes4)(((mask4)(yes) & (mask)) | ((mask4)(no) & ~(mask))))
+#define LANES_ALL(x) ((lanes4){(x), (x), (x), (x)})
+
+static inline double lanes_sum(const lanes4 *v)
+{
+	return ((*v)[0] + (*v)[1]) + ((*v)[2] + (*v)[3]);
+}
+
+#endif

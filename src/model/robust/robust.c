@@ -1,0 +1,224 @@
+#include "robust.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "model/kernels.h"
+#include "robust_iterate.h"
+#include "robust_walk.h"
+
+static const double LEVERAGE_MAX = 0.9999;
+
+/* ---- preparation ---- */
+
+enum { ANCHOR_WORTH = 1 << 15 };
+
+static void design_free(struct design *design)
+{
+	free(design->x);
+	free(design->excess);
+	free(design->inside);
+	free(design->picked);
+	free(design->picked_excess);
+	robust_anchor_free(&design->anchor);
+}
+
+static bp_status design_alloc(size_t n, struct design *design, bp_error *error)
+{
+	*design = (struct design){.n = n};
+	design->x = malloc(n * sizeof *design->x);
+	design->excess = malloc(n * sizeof *design->excess);
+	design->inside = malloc((n + 1) * sizeof *design->inside);
+	design->picked = malloc((2 * robust_picks(n) + 1) * sizeof *design->picked);
+	design->picked_excess = malloc((robust_picks(n) + 1) * sizeof *design->picked_excess);
+	if (!design->x || !design->excess || !design->inside || !design->picked || !design->picked_excess)
+		return error_memory(error, n * 3 * sizeof(double));
+	/* Few observations are read through as quickly as an anchor is placed. */
+	return n < ANCHOR_WORTH ? BP_OK : robust_anchor_alloc(n / 6, &design->anchor, error);
+}
+
+static double largest_size(const double *v, size_t n)
+{
+	double largest[4] = {0}; /* apart, so that they are compared side by side */
+	size_t i = 0;
+
+	for (; i + 4 <= n; i += 4)
+		for (size_t l = 0; l < 4; l++)
+			largest[l] = fabs(v[i + l]) > largest[l] ? fabs(v[i + l]) : largest[l];
+	for (; i < n; i++)
+		largest[0] = fabs(v[i]) > largest[0] ? fabs(v[i]) : largest[0];
+	return fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+}
+
+/* The exponent e with largest |v| in [2^(e-1), 2^e); 0 when all are 0. */
+static int exponent_of(double largest)
+{
+	int e = 0;
+	if (largest > 0)
+		frexp(largest, &e);
+	return e;
+}
+
+/* v * 2^-e where 2^e may lie outside the range of double. */
+struct power {
+	double a, b;
+};
+static struct power power_of(int e)
+{
+	return (struct power){ldexp(1, e / 2), ldexp(1, e - e / 2)};
+}
+
+/* Mean, Sxx and leverages of the scaled x. */
+static void design_prepare(struct design *design)
+{
+	const struct kernels *kernels = kernels_get();
+	const double *x = design->x, n = (double)design->n;
+	const struct robust_sample sample = {x, x, design->excess, design->n};
+	struct robust_line line = {x[0], x[0], 0, 0};
+	struct robust_sums sums;
+
+	for (size_t i = 0; i < design->n; i++)
+		design->excess[i] = 0;
+	kernels->robust_sums(&sample, &line, 0, &sums);
+	design->mean_x = x[0] + sums.wx / n; /* exact when x is constant */
+	line.centre_x = line.centre_y = design->mean_x;
+	kernels->robust_sums(&sample, &line, 0, &sums);
+	design->sxx = fmax(0, sums.wxx - sums.wx * (sums.wx / n));
+
+	const double inverse = design->sxx > 0 ? 1 / design->sxx : 0, mean = design->mean_x, base = 1 - 1 / n, least = 1 - LEVERAGE_MAX;
+	for (size_t i = 0; i < design->n; i++) {
+		double d = x[i] - mean, rest = base - d * d * inverse;
+		design->excess[i] = 1 / sqrt(rest < least ? least : rest) - 1;
+	}
+}
+
+/* Undoes the scaling by powers of two. */
+static void fit_unscale(struct robust_fit *fit, int x_exponent, int y_exponent)
+{
+	struct power p = power_of(y_exponent), q = power_of(y_exponent - x_exponent);
+	fit->intercept = fit->intercept * p.a * p.b;
+	fit->slope = fit->slope * q.a * q.b;
+}
+
+bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error)
+{
+	struct design design;
+	double *scaled = NULL;
+
+	if (!n)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "robust regression: no observation");
+	if (n == 1) {
+		*out = (struct robust_fit){.intercept = y[0], .converged = true};
+		return BP_OK;
+	}
+	bp_status status = design_alloc(n, &design, error);
+	if (status)
+		goto out;
+	scaled = malloc(n * sizeof *scaled);
+	if (!scaled) {
+		status = error_memory(error, n * sizeof *scaled);
+		goto out;
+	}
+	design.x_exponent = exponent_of(largest_size(x, n));
+	const int y_exponent = exponent_of(largest_size(y, n));
+	const struct power p = power_of(-design.x_exponent), q = power_of(-y_exponent);
+	for (size_t i = 0; i < n; i++) {
+		design.x[i] = x[i] * p.a * p.b;
+		scaled[i] = y[i] * q.a * q.b;
+	}
+	design_prepare(&design);
+	robust_iterate(&design, scaled, out);
+	fit_unscale(out, design.x_exponent, y_exponent);
+out:
+	free(scaled);
+	design_free(&design);
+	return status;
+}
+
+/* The next run of valid cells behind *end: cells *start to *end - 1. False when there is none. */
+static bool run_next(const struct lattice *lattice, size_t *start, size_t *end)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	const uint8_t *valid = lattice->valid, *from = *end < cells ? memchr(valid + *end, 1, cells - *end) : NULL, *to;
+
+	if (!from)
+		return false;
+	to = memchr(from, 0, (size_t)(valid + cells - from));
+	*start = (size_t)(from - valid);
+	*end = to ? (size_t)(to - valid) : cells;
+	return true;
+}
+
+/*
+ * Where most of a channel is dark, its line sinks towards 0 for as long as there are numbers to sink to; where that ends would
+ * hang on the unit of measure. Terms beyond the range of single precision are 0: the largest x and y are about 1 here.
+ */
+static void fit_still(struct robust_fit *fit)
+{
+	if (fabs(fit->intercept) < FLT_MIN)
+		fit->intercept = 0;
+	if (fabs(fit->slope) < FLT_MIN)
+		fit->slope = 0;
+}
+
+bp_status robust_fit_colour(const struct lattice *lattice, const float *achromatic, double unit, struct colour_fit out[3],
+                            bp_error *error)
+{
+	const size_t n = lattice->valid_count;
+	struct design design;
+	double *y = NULL;
+	size_t k = 0;
+
+	if (!n)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell");
+	bp_status status = design_alloc(n, &design, error);
+	if (status)
+		goto out;
+	y = malloc(n * sizeof *y);
+	if (!y) {
+		status = error_memory(error, n * sizeof *y);
+		goto out;
+	}
+	for (size_t i = 0, end = 0; run_next(lattice, &i, &end);)
+		for (; i < end; i++)
+			design.x[k++] = (double)achromatic[i];
+	const int float_exponent = exponent_of(largest_size(design.x, n));
+	const struct power p = power_of(-float_exponent);
+	/* The unit enters by its exponent and mantissa, so that it may be of any size. */
+	int unit_exponent;
+	const double mantissa = frexp(unit, &unit_exponent);
+	design.x_exponent = float_exponent + unit_exponent;
+	for (k = 0; k < n; k++)
+		design.x[k] = design.x[k] * p.a * p.b * mantissa;
+	if (n > 1)
+		design_prepare(&design);
+	for (int c = 0; c < 3; c++) {
+		struct robust_fit fit = {0};
+
+		k = 0;
+		for (size_t i = 0, end = 0; run_next(lattice, &i, &end); k += end - i)
+			memcpy(y + k, lattice->rgb[c] + i, (end - i) * sizeof *y);
+		const int y_exponent = exponent_of(largest_size(y, n));
+		const struct power q = power_of(-y_exponent);
+		for (k = 0; k < n; k++)
+			y[k] = y[k] * q.a * q.b;
+		if (n == 1)
+			fit = (struct robust_fit){.intercept = y[0], .converged = true};
+		else
+			robust_iterate(&design, y, &fit);
+		fit_still(&fit);
+		fit_unscale(&fit, design.x_exponent, y_exponent);
+		out[c] = (struct colour_fit){.diffuse = fit.intercept,
+		                             .specular = fit.slope,
+		                             .iterations = fit.iterations,
+		                             .converged = fit.converged,
+		                             .rejected = (double)fit.rejected / (double)n};
+	}
+out:
+	free(y);
+	design_free(&design);
+	return status;
+}

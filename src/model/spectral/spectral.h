@@ -1,0 +1,84 @@
+/*
+ * spectral.h: the model of `--profile spectral`.
+ *
+ * In the logarithm the paper's product of marginals and pair copulas (eq. 7) is a sum, and in the spectrum of
+ * spectrum.h its terms lie apart: harmonic 0 is the (theta_h, theta_d) pair with its marginals, the coarse theta_d
+ * coefficients of the other harmonics are the (theta_h, phi_d) pair, the rest is the conditional pair. Where a pair is
+ * independent its coefficients are 0 and take no room.
+ *
+ *     y_c = log2(1 + b_c / unit)                      c = R, G, B; b in 1/sr
+ *     x_f = sum over c of rotation[f][c] (y_c - base_c)   three fields, the first with most of the variation
+ *     coefficients = spectrum of x_f
+ *
+ * The unit is where the logarithm turns linear: below it a relative error is not worth its bytes. It is a statistic of
+ * the table's values that scales as they do, so a table s times as bright gives the same fields and s times the unit.
+ *
+ * A model that was fitted holds coefficients as they were found; one that was decoded holds levels, a coefficient
+ * being about level * step. What lies below the quantiser's step is lost in encoding, where the budget is known.
+ */
+#ifndef MODEL_SPECTRAL_SPECTRAL_H
+#define MODEL_SPECTRAL_SPECTRAL_H
+
+#include "model/model.h"
+
+/* Of the unit, in 1/sr: a normal number with a reciprocal, and the hundredth of any value is one. */
+#define SPECTRAL_UNIT_LEAST 0x1p-1022
+#define SPECTRAL_UNIT_MOST 0x1p999
+#define SPECTRAL_CODES_UNIT 0x1p39 /* of spectral_codes of kernels.h: what its 1 is, in units */
+enum { SPECTRAL_PLANES_MAX = 24 }; /* |level| < 2^24 */
+#define SPECTRAL_CENTRE_BELOW 0.4f /* where a level lies whose lower planes are missing, as a share of them */
+
+/* A level that is not 0. */
+struct spectral_level {
+	uint32_t at;   /* field * cells + place in the spectrum (row, column, lane) */
+	int32_t level;
+};
+
+/*
+ * Order of coding: units (plane, field, harmonic), planes from planes - 1 down to 0, fields 0..2, harmonics 0..P-1; layer l
+ * ends before unit end[l].
+ */
+struct spectral_model {
+	double unit;          /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
+	float base[3];        /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
+	float rotation[3][3]; /* orthonormal */
+	float *coefficient[3]; /* fitted: spectra of the three fields; NULL when decoded */
+	bool noisy;            /* fitted: noise was found and drawn towards 0 */
+
+	float step;            /* decoded, as all that follows */
+	float centre[3];       /* where values of |level| 1 and of larger ones lie beyond it, in steps; and for levels whose last planes are not there, as a share of what is missing */
+	uint32_t planes;
+	uint32_t end[LAYERS_MAX];
+	struct spectral_level *levels; /* ordered by field and harmonic */
+	uint32_t level_count;
+};
+
+bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error);
+/* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
+float spectral_most(double unit);
+bp_status spectral_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+/* Every second corner along each axis (extents even); *out has half the model's extents. Decoded models only. */
+bp_status spectral_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+void spectral_free(struct spectral_model *model); /* NULL is allowed */
+
+/* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
+uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
+
+/* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
+float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest);
+
+/* spectral_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. */
+bp_status spectral_denoise(struct lattice_dims dims, float *coefficient, bool *noisy, bp_error *error);
+
+/*
+ * spectral_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of
+ * about so many bytes.
+ */
+struct spectrum;
+bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3], double budget_bytes,
+                          int steps, float *const table[3], bp_error *error);
+
+/* spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. */
+bp_status spectral_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], bp_error *error);
+
+#endif

@@ -1,0 +1,206 @@
+/*
+ * spectral_denoise.c: what noise alone would explain is drawn towards 0 (block shrinkage: Cai and Silverman 2001).
+ *
+ *     kept = c max(0, 1 - LAMBDA sigma^2 / mean square of the coefficients around c)
+ *
+ * The noise is estimated from the table itself, by medians of the finest diagonal band, in which smooth materials
+ * have next to nothing: sigma = scale(theta_d) * factor(harmonic). theta_d, because measurements grow noisy towards
+ * grazing angles; harmonics, because faults that are constant along phi_d are in the first one only. An orthonormal transform
+ * spreads white noise evenly over its bands, so the estimate serves all of them.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "spectral.h"
+#include "model/math/fast_math.h"
+#include "model/kernels.h"
+#include "model/math/select.h"
+#include "spectrum.h"
+
+enum { LANES = 16 };
+
+static const float LAMBDA = 4;
+static const double NORMAL_MEDIAN = 0.6745; /* of |x| for a standard normal x */
+static const float NOISE_LEAST = 0.004f;    /* in log2 units: below this sigma nothing is done */
+
+struct noise {
+	float *scale;  /* per theta_d column of the finest bands */
+	float *factor; /* per lane; squared, once all is known */
+};
+
+/* Of sizes >= 0; few: room for as many of them. */
+static double median(const float *size, size_t n, double *few)
+{
+	enum { SHIFT = 20, BINS = 1 << (31 - SHIFT) }; /* eight to the octave */
+	uint32_t bins[BINS] = {0}, bin = 0;
+	size_t below = 0, kept = 0;
+
+	if (!n)
+		return 0;
+	for (size_t i = 0; i < n; i++)
+		bins[bits_of_float(size[i]) >> SHIFT]++;
+	while (below + bins[bin] <= n / 2)
+		below += bins[bin++];
+	for (size_t i = 0; i < n; i++)
+		if (bits_of_float(size[i]) >> SHIFT == bin)
+			few[kept++] = (double)size[i];
+	return select_kth(few, kept, n / 2 - below);
+}
+
+/* The scale of every column, from a quarter of its coefficients of the higher harmonics. */
+static void scale_estimate(struct lattice_dims d, const float *band, uint32_t rows, uint32_t columns, float *sample, double *few,
+                           float *scale)
+{
+	const uint32_t lanes = d.phi_d, even = (lanes + 1) / 2, low = even / 5; /* lanes low.. of either kind */
+
+	for (uint32_t x = 0; x < columns; x++) {
+		size_t n = 0;
+		for (uint32_t y = 0; y < rows; y++) {
+			const float *row = band + ((size_t)y * d.theta_d + x) * lanes;
+			for (uint32_t q = (4 - y % 4) % 4; q < lanes; q += 4)
+				if ((q < even ? q : q - even) >= low)
+					sample[n++] = fabsf(row[q]);
+		}
+		scale[x] = (float)(median(sample, n, few) / NORMAL_MEDIAN) + 1e-12f;
+	}
+}
+
+/* The factor of every lane, from every second of its coefficients; LANES lanes at a time, which stand side by side in memory. */
+static void factor_estimate(struct lattice_dims d, const float *band, uint32_t rows, uint32_t columns, float *sample, double *few,
+                            struct noise *noise)
+{
+	const size_t room = (size_t)rows * columns;
+
+	for (uint32_t q0 = 0; q0 < d.phi_d; q0 += LANES) {
+		const uint32_t count = d.phi_d - q0 < LANES ? d.phi_d - q0 : LANES;
+		size_t n[LANES] = {0};
+		for (uint32_t y = 0; y < rows; y++)
+			for (uint32_t x = 0; x < columns; x++) {
+				const float *row = band + ((size_t)y * d.theta_d + x) * d.phi_d + q0, per = 1 / noise->scale[x];
+				for (uint32_t q = (x + y + q0) % 2; q < count; q += 2)
+					sample[q * room + n[q]++] = fabsf(row[q]) * per;
+			}
+		for (uint32_t q = 0; q < count; q++)
+			noise->factor[q0 + q] = (float)(median(sample + q * room, n[q], few) / NORMAL_MEDIAN);
+	}
+}
+
+/* False where there is so little noise that nothing is done. */
+static bp_status noise_estimate(struct lattice_dims d, const float *c, struct noise *noise, bool *noisy, bp_error *error)
+{
+	const uint32_t rows = d.theta_h / 2, columns = d.theta_d / 2;
+	const float *band = c + ((size_t)(d.theta_h - rows) * d.theta_d + d.theta_d - columns) * d.phi_d;
+	const size_t room = (size_t)rows * (d.phi_d > LANES * columns ? d.phi_d : LANES * columns);
+	float *sample = malloc(room * sizeof *sample), largest = 0;
+	double *few = malloc(room * sizeof *few);
+
+	if (!sample || !few) {
+		free(sample);
+		free(few);
+		return error_memory(error, room * sizeof *few);
+	}
+	scale_estimate(d, band, rows, columns, sample, few, noise->scale);
+	for (uint32_t x = 0; x < columns; x++)
+		largest = noise->scale[x] > largest ? noise->scale[x] : largest;
+	*noisy = largest >= NOISE_LEAST;
+	if (*noisy)
+		factor_estimate(d, band, rows, columns, sample, few, noise);
+	free(sample);
+	free(few);
+	return BP_OK;
+}
+
+/* A band of wavelet coefficients as a rectangle of rows and columns. */
+struct rectangle {
+	uint32_t row, column, rows, columns;
+};
+
+/*
+ * Squares of three rows of a band, of which the middle one is being shrunk, in place: what it needs of the others is here.
+ * A row is [columns + 2][P + 2]; its first and last cells are 0, as the first and last lanes are.
+ */
+struct squares {
+	float *row[3], *nothing; /* nothing: a row of zeros, for those beyond the band */
+	void *block;
+};
+
+static bp_status squares_alloc(struct lattice_dims d, struct squares *out, bp_error *error)
+{
+	const size_t row = ((size_t)d.theta_d + 2) * (d.phi_d + 2);
+	float *block = out->block = calloc(4 * row, sizeof *block);
+	if (!block)
+		return error_memory(error, 4 * row * sizeof *block);
+	for (int r = 0; r < 3; r++)
+		out->row[r] = block + (size_t)r * row;
+	out->nothing = block + 3 * row;
+	return BP_OK;
+}
+
+static void squares_fill(struct lattice_dims d, const float *c, struct rectangle band, uint32_t y, float *out)
+{
+	const float *from = c + ((size_t)(band.row + y) * d.theta_d + band.column) * d.phi_d;
+	for (size_t x = 0; x < band.columns; x++)
+		for (size_t q = 0; q < d.phi_d; q++)
+			out[(x + 1) * (d.phi_d + 2) + q + 1] = from[x * d.phi_d + q] * from[x * d.phi_d + q];
+	memset(out + ((size_t)band.columns + 1) * (d.phi_d + 2), 0, (d.phi_d + 2) * sizeof *out);
+}
+
+static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, const struct noise *noise, struct squares *squares)
+{
+	const struct kernels *kernels = kernels_get();
+	const uint32_t columns = d.theta_d / 2, p = d.phi_d;
+
+	squares_fill(d, c, band, 0, squares->row[0]);
+	for (uint32_t y = 0; y < band.rows; y++) {
+		const float *const row[3] = {y ? squares->row[(y + 2) % 3] : squares->nothing, squares->row[y % 3],
+		                             y + 1 < band.rows ? squares->row[(y + 1) % 3] : squares->nothing};
+		const int high = 1 + (y > 0) + (y + 1 < band.rows);
+		if (y + 1 < band.rows)
+			squares_fill(d, c, band, y + 1, squares->row[(y + 1) % 3]);
+		for (uint32_t x = 0; x < band.columns; x++) {
+			const float sigma = noise->scale[(uint64_t)x * columns / band.columns];
+			const int count = high * (1 + (x > 0) + (x + 1 < band.columns)) + 1; /* the two halves */
+			const size_t at = (size_t)x * (p + 2) + 1;
+			const float *const around[3] = {row[0] + at, row[1] + at, row[2] + at};
+			kernels->spectral_shrink(c + ((size_t)(band.row + y) * d.theta_d + band.column + x) * p, around, (size_t)p + 2, noise->factor,
+			                        LAMBDA * sigma * sigma * (float)count, p);
+		}
+	}
+}
+
+bp_status spectral_denoise(struct lattice_dims d, float *coefficient, bool *noisy, bp_error *error)
+{
+	struct noise noise = {calloc(d.theta_d, sizeof(float)), calloc(d.phi_d, sizeof(float))};
+	struct squares squares = {0};
+	bool here = false;
+	bp_status status = noise.scale && noise.factor ? BP_OK : error_memory(error, d.phi_d * sizeof(float));
+
+	if (status || !spectrum_levels(d.theta_h, d.theta_d))
+		goto out;
+	status = noise_estimate(d, coefficient, &noise, &here, error);
+	if (status || !here)
+		goto out;
+	status = squares_alloc(d, &squares, error);
+	if (status)
+		goto out;
+	for (uint32_t q = 0; q < d.phi_d; q++)
+		noise.factor[q] *= noise.factor[q];
+	/* The coarsest band is kept as it is. */
+	uint32_t rows = d.theta_h, columns = d.theta_d;
+	for (uint32_t l = spectrum_levels(rows, columns); l > 0; l--) {
+		const uint32_t r = (rows + 1) / 2, c = (columns + 1) / 2;
+		band_shrink(d, coefficient, (struct rectangle){0, c, r, columns - c}, &noise, &squares);
+		band_shrink(d, coefficient, (struct rectangle){r, 0, rows - r, c}, &noise, &squares);
+		band_shrink(d, coefficient, (struct rectangle){r, c, rows - r, columns - c}, &noise, &squares);
+		rows = r;
+		columns = c;
+	}
+	*noisy = true;
+out:
+	free(squares.block);
+	free(noise.scale);
+	free(noise.factor);
+	return status;
+}

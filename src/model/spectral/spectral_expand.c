@@ -1,0 +1,73 @@
+/* spectral_expand.c: coefficients become a table, block by block of phi_d; the inverse of spectral_fit.c. */
+#include "spectral_expand.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "error.h"
+#include "memory.h"
+#include "spectral_terms.h"
+#include "model/kernels.h"
+
+float spectral_most(double unit)
+{
+	int exponent;
+	frexp(unit, &exponent);
+	return exponent > 1011 - 40 ? (float)(1011 - exponent) : 40;
+}
+
+bp_status spectral_expand_blocks(const struct model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error)
+{
+	const struct lattice_dims d = model->dims;
+	const size_t rows = (size_t)d.theta_h * d.theta_d, cells = rows * SPECTRUM_BLOCK;
+	struct spectrum_inverse *inverse = NULL;
+	struct spectral_terms terms = {0};
+	float *planes = memory_alloc(3 * cells * sizeof *planes);
+	bp_status status = planes ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * cells * sizeof *planes);
+
+	if (!status)
+		status = spectral_terms_make(model->spectral, inverse, layers, &terms, error);
+	for (uint32_t k = 0; !status && k < d.phi_d; k += SPECTRUM_BLOCK) {
+		const struct spectral_block block = {
+			.field = {planes, planes + cells, planes + 2 * cells},
+			.rows = rows, .column = k, .width = d.phi_d - k < SPECTRUM_BLOCK ? d.phi_d - k : SPECTRUM_BLOCK, .stride = SPECTRUM_BLOCK,
+		};
+		for (size_t f = 0; f < 3; f++)
+			spectrum_inverse_block(inverse, terms.term, terms.start + f * d.phi_d, k, planes + f * cells);
+		take(user, &block);
+	}
+	spectral_terms_free(&terms);
+	spectrum_inverse_free(inverse);
+	free(planes);
+	return status;
+}
+
+struct values_target {
+	const struct spectral_model *model;
+	const struct expansion *out;
+};
+
+static void values_take(void *user, const struct spectral_block *block)
+{
+	const struct values_target *target = user;
+	const struct spectral_model *m = target->model;
+	const size_t p = target->out->dims.phi_d, at = block->row * p + block->column;
+	float *const rgb[3] = {target->out->rgb[0] + at, target->out->rgb[1] + at, target->out->rgb[2] + at};
+
+	kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
+	                              spectral_most(m->unit), rgb, p);
+}
+
+bp_status spectral_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+{
+	struct values_target target = {model->spectral, out};
+	out->unit = model->spectral->unit;
+	return spectral_expand_blocks(model, layers, values_take, &target, error);
+}
+
+bp_status spectral_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+{
+	struct values_target target = {model->spectral, out};
+	out->unit = model->spectral->unit;
+	return spectral_expand_half_blocks(model, layers, values_take, &target, error);
+}

@@ -1,0 +1,142 @@
+/*
+ * spectral_fill.c: invalid cells get what costs the fewest coefficients: a membrane through the valid cells in all three
+ * angles. A pyramid per theta_h slice (fill.h) gives the large shapes; sweeps over the whole table then join the slices.
+ *
+ * Two dimensions alone are not enough: slices that were filled one by one differ where nothing was measured, and the
+ * theta_h wavelets pay for it (7 % of a record).
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "spectral.h"
+#include "model/math/fill.h"
+#include "model/kernels.h"
+
+enum {
+	SWEEPS = 16, /* 20 take a quarter more time and save 0.3 % of the error; 12 cost 1 % */
+	PIECE = 8,
+};
+
+/* A piece of a row with invalid cells: a whole number of PIECEs long, but for the row's end. */
+struct run {
+	uint32_t at, count, filled;  /* filled: where its marks begin */
+	int32_t neighbour[4];        /* how far away the same piece is in the rows around; mirrored at the table's ends */
+	int8_t first, last;          /* whether the row begins or ends here */
+};
+
+struct runs {
+	struct run *run;
+	float *filled; /* 1 where a cell is to be filled, 0 where not */
+	uint32_t count;
+};
+
+static struct run run_at(struct lattice_dims d, uint32_t row, uint32_t column, uint32_t marks)
+{
+	const uint32_t i = row / d.theta_d, j = row % d.theta_d;
+	const int32_t p = (int32_t)d.phi_d, slice = (int32_t)(d.theta_d * d.phi_d);
+	return (struct run){
+		.at = row * d.phi_d + column, .filled = marks, .first = column == 0,
+		.neighbour = {j ? -p : p, j + 1 < d.theta_d ? p : -p, i ? -slice : slice, i + 1 < d.theta_h ? slice : -slice},
+	};
+}
+
+/* All of the table, in order; and present[row]: no cell is invalid. */
+static bp_status runs_make(struct lattice_dims d, const uint8_t *valid, uint8_t *present, struct runs *out, bp_error *error)
+{
+	const size_t p = d.phi_d, rows = (size_t)d.theta_h * d.theta_d;
+	uint32_t run_count = 0, mark_count = 0;
+
+	for (int counting = 1; counting >= 0; counting--) {
+		uint32_t n = 0, marks = 0;
+		for (size_t r = 0; r < rows; r++) {
+			const uint8_t *row = valid + r * p;
+			present[r] = !memchr(row, 0, p);
+			for (size_t k = 0, before = 0; k < p && !present[r]; k += PIECE) {
+				const size_t length = k + PIECE < p ? PIECE : p - k;
+				if (!memchr(row + k, 0, length)) {
+					before = 0;
+					continue;
+				}
+				if (!before && !counting)
+					out->run[n] = run_at(d, (uint32_t)r, (uint32_t)k, marks);
+				n += !before;
+				before = 1;
+				for (size_t q = k; q < k + length && !counting; q++)
+					out->filled[marks + q - k] = row[q] ? 0 : 1;
+				if (!counting) {
+					out->run[n - 1].count += (uint32_t)length;
+					out->run[n - 1].last = k + length == p;
+				}
+				marks += (uint32_t)length;
+			}
+		}
+		if (!counting)
+			break;
+		run_count = n;
+		mark_count = marks;
+		out->run = malloc((run_count + 1) * sizeof *out->run);
+		out->filled = malloc((mark_count + 1) * sizeof *out->filled);
+		if (!out->run || !out->filled)
+			return error_memory(error, (mark_count + 1) * sizeof *out->filled);
+	}
+	out->count = run_count;
+	return BP_OK;
+}
+
+/* One sweep over the runs, forwards or backwards; mirrored at the table's ends. */
+static void sweep(const struct runs *runs, int backwards, float *table)
+{
+	const struct kernels *kernels = kernels_get();
+
+	for (uint32_t n = 0; n < runs->count; n++) {
+		const struct run *run = &runs->run[backwards ? runs->count - 1 - n : n];
+		float *x = table + run->at;
+		const float *const neighbour[4] = {x + run->neighbour[0], x + run->neighbour[1], x + run->neighbour[2], x + run->neighbour[3]};
+		kernels->spectral_smooth(x, runs->filled + run->filled, neighbour, run->count, run->first ? x[0] : x[-1],
+		                        run->last ? x[run->count - 1] : x[run->count]);
+	}
+}
+
+/* What a slice before the first one with a valid cell is filled with: the mean of that one's. */
+static float start_value(struct lattice_dims d, const uint8_t *valid, const float *table)
+{
+	const size_t slice = (size_t)d.theta_d * d.phi_d, cells = lattice_cells(d);
+	double sum = 0;
+	size_t count = 0;
+
+	for (size_t at = 0; at < cells && !count; at += slice)
+		for (size_t n = at; n < at + slice; n++)
+			if (valid[n]) {
+				sum += (double)table[n];
+				count++;
+			}
+	return count ? (float)(sum / (double)count) : 0;
+}
+
+bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *const table[3], bp_error *error)
+{
+	const size_t p = d.phi_d, rows = (size_t)d.theta_h * d.theta_d, slice = d.theta_d * p;
+	uint8_t *present = malloc(rows);
+	struct runs runs = {0};
+	struct fill *fill = NULL;
+	bp_status status = present ? fill_create(d.theta_d, d.phi_d, false, false, &fill, error) : error_memory(error, rows);
+
+	if (!status)
+		status = runs_make(d, valid, present, &runs, error);
+	for (int c = 0; !status && c < 3; c++) {
+		float empty = start_value(d, valid, table[c]);
+		for (size_t i = 0; i < d.theta_h; i++) {
+			if (memchr(present + i * d.theta_d, 0, d.theta_d))
+				fill_plane(fill, table[c] + i * slice, valid + i * slice, empty);
+			empty = table[c][i * slice]; /* a slice without a valid cell is flat */
+		}
+		for (int s = 0; s < SWEEPS; s++)
+			sweep(&runs, s % 2, table[c]);
+	}
+	fill_free(fill);
+	free(runs.run);
+	free(runs.filled);
+	free(present);
+	return status;
+}

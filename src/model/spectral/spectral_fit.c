@@ -1,0 +1,211 @@
+/*
+ * spectral_fit.c: a measured lattice becomes the spectra of three fields.
+ *
+ *     logarithms -> fill -> spectrum, per channel -> rotation to the channels' principal axes -> noise drawn towards 0
+ *
+ * and, beside it, the paper's colour regression on the measured achromatic table.
+ *
+ * The only thing with a scale is the unit, and it scales with the table: multiply every value by s, and the logarithms, and
+ * all that is made of them, stay what they were.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "memory.h"
+#include "stage.h"
+#include "spectral.h"
+#include "spectral_survey.h"
+#include "model/math/fast_math.h"
+#include "model/kernels.h"
+#include "spectrum.h"
+
+void spectral_free(struct spectral_model *model)
+{
+	if (!model)
+		return;
+	free(model->coefficient[0]); /* the three are one block */
+	free(model->levels);
+	free(model);
+}
+
+/* Eigenvectors of a symmetric matrix by Jacobi rotations: columns of v. */
+static void eigenvectors(double a[3][3], double v[3][3])
+{
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			v[i][j] = i == j;
+	for (int sweep = 0; sweep < 12; sweep++)
+		for (int p = 0; p < 2; p++)
+			for (int q = p + 1; q < 3; q++) {
+				if (a[p][q] == 0)
+					continue;
+				/* Golub and Van Loan, 8.5: tan, cos and sin without trigonometry. */
+				const double tau = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+				const double t = (tau >= 0 ? 1 : -1) / (fabs(tau) + sqrt(1 + tau * tau)), c = 1 / sqrt(1 + t * t), s = t * c;
+				for (int i = 0; i < 3; i++) {
+					const double x = a[i][p], y = a[i][q];
+					a[i][p] = c * x - s * y;
+					a[i][q] = s * x + c * y;
+				}
+				for (int i = 0; i < 3; i++) {
+					const double x = a[p][i], y = a[q][i];
+					a[p][i] = c * x - s * y;
+					a[q][i] = s * x + c * y;
+				}
+				for (int i = 0; i < 3; i++) {
+					const double x = v[i][p], y = v[i][q];
+					v[i][p] = c * x - s * y;
+					v[i][q] = s * x + c * y;
+				}
+			}
+}
+
+/*
+ * Principal axes of the channels' coefficients, every coefficient with weight 1/(1 + its energy): what counts is the
+ * direction of the many, not the size of the few. Every third row will do.
+ */
+static void rotation_find(float *const channel[3], size_t rows, size_t lanes, float rotation[3][3])
+{
+	const struct kernels *kernels = kernels_get();
+	double moment[6] = {0}, v[3][3];
+	int order[3] = {0, 1, 2};
+
+	for (size_t r = 1; r < rows; r += 3) {
+		const float *const x[3] = {channel[0] + r * lanes, channel[1] + r * lanes, channel[2] + r * lanes};
+		kernels->spectral_moments(x, lanes, moment);
+	}
+	double a[3][3] = {
+		{moment[0], moment[1], moment[2]}, {moment[1], moment[3], moment[4]}, {moment[2], moment[4], moment[5]}
+	};
+	eigenvectors(a, v);
+	for (int i = 0; i < 3; i++)
+		for (int j = i + 1; j < 3; j++)
+			if (a[order[j]][order[j]] > a[order[i]][order[i]]) {
+				int swap = order[i];
+				order[i] = order[j];
+				order[j] = swap;
+			}
+	for (int f = 0; f < 3; f++) {
+		const double sum = v[0][order[f]] + v[1][order[f]] + v[2][order[f]];
+		for (int c = 0; c < 3; c++)
+			rotation[f][c] = (float)(sum < 0 ? -v[c][order[f]] : v[c][order[f]]);
+	}
+}
+
+/* The channels' logarithms, channel order[k] in coefficient[k], with values for the invalid cells; and the base. */
+static bp_status logs_make(const struct lattice *lattice, const int order[3], struct spectral_model *fitted, bp_error *error)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+
+	stage_enter(STAGE_CLEAN);
+	for (int k = 0; k < 3; k++) {
+		const double sum = kernels_get()->spectral_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit, fitted->coefficient[k]);
+		fitted->base[order[k]] = (float)(sum / (double)lattice->valid_count);
+	}
+	return spectral_fill(lattice->dims, lattice->valid, fitted->coefficient, error);
+}
+
+/* Tables of logarithms become spectra, still of channels; rotation: their axes, of the channels in that order. */
+static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const int order[3], struct spectral_model *fitted, float rotation[3][3])
+{
+	stage_enter(STAGE_TRANSFORM);
+	for (int k = 0; k < 3; k++)
+		spectrum_forward(spectrum, fitted->coefficient[k], fitted->base[order[k]]);
+	rotation_find(fitted->coefficient, (size_t)d.theta_h * d.theta_d, d.phi_d, rotation);
+}
+
+/* Spectra of channels become those of fields. */
+static bp_status fields_make(struct lattice_dims d, const int order[3], const float rotation[3][3], bool denoise, struct spectral_model *fitted,
+                             bp_error *error)
+{
+	const size_t rows = (size_t)d.theta_h * d.theta_d;
+	bp_status status = BP_OK;
+
+	for (size_t r = 0; r < rows; r++) {
+		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d, fitted->coefficient[2] + r * d.phi_d};
+		kernels_get()->spectral_rotate(x, d.phi_d, rotation);
+	}
+	for (int f = 0; f < 3; f++)
+		for (int k = 0; k < 3; k++)
+			fitted->rotation[f][order[k]] = rotation[f][k];
+	stage_enter(STAGE_CLEAN);
+	for (int f = 0; !status && f < 3 && denoise; f++)
+		status = spectral_denoise(d, fitted->coefficient[f], &fitted->noisy, error);
+	return status;
+}
+
+/* Steps of spectral_project by effort 0..9 (0: not told, as records may say): what the first saves, 3 % of a record, costs a sixth of a fit. */
+static const int PROJECTIONS[10] = {0, 0, 0, 0, 0, 0, 1, 2, 4, 8};
+
+/* fields_make after better values have been found for the invalid cells; noise would only be carried on into them. */
+static bp_status fields_improve(const struct lattice *lattice, const struct fit_options *options, struct spectrum *spectrum, const int order[3],
+                                const float *filled, struct spectral_model *fitted, bp_error *error)
+{
+	const float base[3] = {fitted->base[order[0]], fitted->base[order[1]], fitted->base[order[2]]};
+	float rotation[3][3];
+	bp_status status;
+
+	memcpy(fitted->coefficient[0], filled, 3 * lattice_cells(lattice->dims) * sizeof *filled);
+	stage_enter(STAGE_CLEAN);
+	status = spectral_project(spectrum, lattice->dims, lattice->valid, base, options->budget_bytes, PROJECTIONS[options->effort],
+	                         fitted->coefficient, error);
+	if (status)
+		return status;
+	spectra_make(lattice->dims, spectrum, order, fitted, rotation);
+	return fields_make(lattice->dims, order, (const float(*)[3])rotation, true, fitted, error);
+}
+
+bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error)
+{
+	const struct lattice_dims d = lattice->dims;
+	const size_t cells = lattice_cells(d);
+	/* An error bound is a promise about the measured values, their noise included. */
+	const bool denoise = !(options->max_error > 0), project = denoise && PROJECTIONS[options->effort] > 0;
+	struct spectral_model *fitted = model->spectral = calloc(1, sizeof *fitted);
+	struct spectrum *spectrum = NULL;
+	struct spectral_survey sample = {0};
+	float *filled = NULL, rotation[3][3];
+	int order[3]; /* coefficient[k] is channel order[k], until it becomes field k */
+	bp_status status;
+
+	if (!fitted)
+		return error_memory(error, sizeof *fitted);
+	model->layer_count = 1;
+	stage_enter(STAGE_CLEAN);
+	fitted->coefficient[0] = malloc(3 * cells * sizeof(float));
+	if (!fitted->coefficient[0])
+		return error_memory(error, 3 * cells * sizeof(float));
+	fitted->coefficient[1] = fitted->coefficient[0] + cells;
+	fitted->coefficient[2] = fitted->coefficient[1] + cells;
+	stage_enter(STAGE_REGRESSION);
+	status = spectral_survey_draw(lattice, &sample, error);
+	if (!status)
+		status = spectral_survey_colour(&sample, model->colour, error);
+	stage_enter(STAGE_CLEAN);
+	if (!status) {
+		spectral_survey_order(&sample, order);
+		fitted->unit = spectral_survey_unit(&sample, lattice);
+		status = spectrum_create(d, &spectrum, error);
+	}
+	spectral_survey_free(&sample);
+	if (!status)
+		status = logs_make(lattice, order, fitted, error);
+	if (!status && project) {
+		filled = malloc(3 * cells * sizeof *filled);
+		if (filled)
+			memcpy(filled, fitted->coefficient[0], 3 * cells * sizeof *filled);
+		else
+			status = error_memory(error, 3 * cells * sizeof *filled);
+	}
+	if (!status)
+		spectra_make(d, spectrum, order, fitted, rotation);
+	if (!status)
+		status = fields_make(d, order, (const float(*)[3])rotation, denoise, fitted, error);
+	if (!status && project && !fitted->noisy && lattice->valid_count < cells)
+		status = fields_improve(lattice, options, spectrum, order, filled, fitted, error);
+	free(filled);
+	spectrum_free(spectrum);
+	return status;
+}

@@ -1,0 +1,114 @@
+/*
+ * spectral_project.c: better values for invalid cells, at the price of a pair of transforms: what the coefficients that a record can
+ * hold say about them (projections onto convex sets, as Papoulis and Gerchberg did it for band-limited signals).
+ *
+ * A step takes the spectrum, drops what is below a threshold, and sets the invalid cells to what is left; measured cells stay. The
+ * threshold falls to the one that leaves as many coefficients as the budget has bytes for.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "memory.h"
+#include "spectral.h"
+#include "model/math/fast_math.h"
+#include "spectrum_inverse.h"
+
+enum {
+	BIN_SHIFT = 19, /* of a float's bits: 16 bins to the octave */
+	BINS = 1 << (31 - BIN_SHIFT),
+};
+static const double BITS_EACH = 4.3; /* of a record, for each coefficient that is not 0: 3.8 to 4.9 on surrogates */
+
+struct projection {
+	struct lattice_dims dims;
+	struct spectrum_inverse *inverse;
+	float *spectrum; /* of one channel, which are much alike */
+	float *plane;
+	struct spectrum_term *term;
+	uint32_t *start;
+	uint32_t room; /* terms */
+};
+
+static bp_status projection_create(struct lattice_dims d, uint32_t room, struct projection *out, bp_error *error)
+{
+	const size_t cells = lattice_cells(d), rows = (size_t)d.theta_h * d.theta_d;
+
+	*out = (struct projection){.dims = d, .room = room};
+	out->spectrum = memory_alloc(cells * sizeof(float));
+	out->plane = memory_alloc(rows * SPECTRUM_BLOCK * sizeof(float));
+	out->term = malloc(((size_t)room + 1) * sizeof *out->term);
+	out->start = malloc(((size_t)d.phi_d + 1) * sizeof *out->start);
+	if (!out->spectrum || !out->plane || !out->term || !out->start)
+		return error_memory(error, cells * sizeof(float));
+	return spectrum_inverse_create(d, &out->inverse, error);
+}
+
+static void projection_free(struct projection *p)
+{
+	free(p->spectrum);
+	free(p->plane);
+	free(p->term);
+	free(p->start);
+	spectrum_inverse_free(p->inverse);
+}
+
+/* The size above which there are about `count` coefficients. */
+static float size_of_rank(const float *coefficient, size_t cells, double count)
+{
+	uint32_t bins[BINS] = {0};
+	double above = 0;
+	uint32_t bin = BINS;
+
+	for (size_t i = 0; i < cells; i++)
+		bins[(bits_of_float(coefficient[i]) & 0x7fffffff) >> BIN_SHIFT]++;
+	while (bin > 1 && above + bins[bin - 1] <= count)
+		above += bins[--bin];
+	return float_of_bits(bin << BIN_SHIFT < 0x7f800000 ? bin << BIN_SHIFT : 0x7f7fffff);
+}
+
+/* One step on one channel's table. */
+static void channel_project(const struct projection *p, const uint8_t *valid, float base, float threshold, float *table)
+{
+	const size_t lanes = p->dims.phi_d, rows = (size_t)p->dims.theta_h * p->dims.theta_d;
+	uint32_t n = 0;
+
+	for (uint32_t m = 0; m < lanes; m++) {
+		const float *lane = p->spectrum + spectrum_lane(p->dims.phi_d, m);
+		p->start[m] = n;
+		for (uint32_t r = 0; r < rows && n < p->room; r++)
+			if (fabsf(lane[r * lanes]) >= threshold)
+				p->term[n++] = spectrum_term_make(p->inverse, r, lane[r * lanes]);
+	}
+	p->start[lanes] = n;
+	for (uint32_t k = 0; k < lanes; k += SPECTRUM_BLOCK) {
+		const size_t width = lanes - k < SPECTRUM_BLOCK ? lanes - k : SPECTRUM_BLOCK;
+		spectrum_inverse_block(p->inverse, p->term, p->start, k, p->plane);
+		for (size_t r = 0; r < rows; r++)
+			for (size_t q = 0; q < width; q++)
+				if (!valid[r * lanes + k + q])
+					table[r * lanes + k + q] = p->plane[r * SPECTRUM_BLOCK + q] + base;
+	}
+}
+
+bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, const uint8_t *valid, const float base[3], double budget_bytes,
+                          int steps, float *const table[3], bp_error *error)
+{
+	const size_t cells = lattice_cells(d);
+	const double wanted = fmin(budget_bytes * 8 / BITS_EACH / 4, (double)cells); /* of one channel, which are much alike */
+	struct projection p;
+	bp_status status = projection_create(d, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
+
+	for (int c = 0; !status && c < 3; c++)
+		for (int s = 0; s < steps; s++) {
+			memcpy(p.spectrum, table[c], cells * sizeof(float));
+			spectrum_forward(spectrum, p.spectrum, base[c]);
+			/* Four times the last threshold at first where there are steps enough. */
+			const float last = size_of_rank(p.spectrum, cells, wanted);
+			const double factor = steps > 1 ? fast_exp2(2.0 * (steps - 1 - s) / (steps - 1)) : 1;
+			channel_project(&p, valid, base[c], last * (float)factor, table[c]);
+		}
+	projection_free(&p);
+	return status;
+}

@@ -1,0 +1,81 @@
+#include "spectrum.h"
+
+#include <stdlib.h>
+
+#include "error.h"
+#include "cosines.h"
+#include "model/kernels.h"
+
+struct spectrum {
+	struct lattice_dims dims;
+	uint32_t levels;
+	struct cosines *cosines;
+	float *scratch; /* for the wavelets */
+};
+
+uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
+{
+	uint32_t n = theta_h < theta_d ? theta_h : theta_d, levels = 0;
+	while ((n + 1) / 2 >= 8) {
+		n = (n + 1) / 2;
+		levels++;
+	}
+	return levels;
+}
+
+/* From the first quadrant only, so that equal angles give equal values. */
+double spectrum_cosine(uint64_t a, uint32_t p)
+{
+	double c, s;
+	a %= 4 * (uint64_t)p;
+	if (a > 2 * (uint64_t)p)
+		a = 4 * (uint64_t)p - a;
+	const int negative = a > p;
+	if (negative)
+		a = 2 * (uint64_t)p - a;
+	quarter_cos_sin((double)a / p, &c, &s);
+	return negative ? -c : c;
+}
+
+bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_error *error)
+{
+	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d;
+	struct spectrum *t = calloc(1, sizeof *t);
+
+	if (!t)
+		return error_memory(error, sizeof *t);
+	t->dims = dims;
+	t->levels = spectrum_levels(dims.theta_h, dims.theta_d);
+	t->scratch = malloc(12 * longest * sizeof(float));
+	bp_status status = t->scratch ? cosines_create(dims.phi_d, &t->cosines, error) : error_memory(error, 12 * longest * sizeof(float));
+	if (status)
+		spectrum_free(t);
+	else
+		*out = t;
+	return status;
+}
+
+void spectrum_free(struct spectrum *t)
+{
+	if (!t)
+		return;
+	cosines_free(t->cosines);
+	free(t->scratch);
+	free(t);
+}
+
+void spectrum_forward(struct spectrum *t, float *table, float base)
+{
+	const struct kernels *kernels = kernels_get();
+	const size_t p = t->dims.phi_d, slice = t->dims.theta_d * p;
+	size_t rows = t->dims.theta_h, columns = t->dims.theta_d;
+
+	cosines_forward(t->cosines, table, rows * columns, base);
+	for (uint32_t l = 0; l < t->levels; l++) {
+		for (size_t i = 0; i < rows; i++)
+			kernels->cdf97_forward(table + i * slice, columns, p, p, t->scratch);
+		kernels->cdf97_forward(table, rows, slice, columns * p, t->scratch);
+		rows = (rows + 1) / 2;
+		columns = (columns + 1) / 2;
+	}
+}

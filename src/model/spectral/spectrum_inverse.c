@@ -1,0 +1,109 @@
+#include "spectrum_inverse.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "model/kernels.h"
+
+/* One axis of `here` coefficients of one step, coarse ones first: where the i-th belongs among them, and its gain in that step. */
+static uint32_t step_place(uint32_t i, uint32_t here, float *gain)
+{
+	const uint32_t low = (here + 1) / 2;
+	/* As floats, because the forward transform's are. */
+	*gain = i < low ? 1 / SPECTRUM_GAIN : SPECTRUM_GAIN;
+	return i < low ? 2 * i : 2 * (i - low) + 1;
+}
+
+static void places_fill(struct spectrum_inverse *t)
+{
+	const struct lattice_dims d = t->dims;
+	const double coarser = (double)(1 / SPECTRUM_GAIN) * (double)(1 / SPECTRUM_GAIN); /* what every later step does along both axes */
+
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		for (uint32_t j = 0; j < d.theta_d; j++) {
+			/* The coarsest step whose coefficients reach so far has it among its own; the last one's low ones are of the coarsest band. */
+			uint32_t l = 0;
+			while (l < t->levels && i < spectrum_extent(d.theta_h, l + 1) && j < spectrum_extent(d.theta_d, l + 1))
+				l++;
+			float gain[2] = {1, 1};
+			const uint32_t y = l < t->levels ? step_place(i, spectrum_extent(d.theta_h, l), &gain[0]) : i;
+			const uint32_t x = l < t->levels ? step_place(j, spectrum_extent(d.theta_d, l), &gain[1]) : j;
+			double product = (double)gain[0] * (double)gain[1];
+			t->place[i * d.theta_d + j] = (y << l) * d.theta_d + (x << l);
+			for (uint32_t k = 0; k < l; k++)
+				product *= coarser;
+			t->gain[i * d.theta_d + j] = (float)product;
+		}
+}
+
+bp_status spectrum_inverse_create(struct lattice_dims d, struct spectrum_inverse **out, bp_error *error)
+{
+	const size_t rows = (size_t)d.theta_h * d.theta_d;
+	struct spectrum_inverse *t = calloc(1, sizeof *t);
+
+	if (!t)
+		return error_memory(error, sizeof *t);
+	t->dims = d;
+	t->levels = spectrum_levels(d.theta_h, d.theta_d);
+	t->place = malloc(rows * sizeof *t->place);
+	t->gain = malloc(rows * sizeof *t->gain);
+	t->cosine = malloc(4 * (size_t)d.phi_d * sizeof *t->cosine);
+	if (!t->place || !t->gain || !t->cosine) {
+		spectrum_inverse_free(t);
+		return error_memory(error, rows * sizeof *t->place);
+	}
+	places_fill(t);
+	const double scale = sqrt(2.0 / d.phi_d);
+	for (uint32_t a = 0; a < 4 * d.phi_d; a++)
+		t->cosine[a] = (float)(scale * spectrum_cosine(a, d.phi_d));
+	*out = t;
+	return BP_OK;
+}
+
+void spectrum_inverse_free(struct spectrum_inverse *t)
+{
+	if (!t)
+		return;
+	free(t->place);
+	free(t->gain);
+	free(t->cosine);
+	free(t);
+}
+
+void spectrum_inverse_cosines(const struct spectrum_inverse *t, uint32_t m, uint32_t first, uint32_t every, uint32_t count, float *out)
+{
+	const uint32_t period = 4 * t->dims.phi_d, step = 2 * m * every % period;
+	uint32_t a = (uint32_t)((uint64_t)m * (2 * first + 1) % period);
+
+	for (uint32_t n = 0; n < count; n++) {
+		out[n] = t->cosine[a];
+		a += step;
+		a -= a >= period ? period : 0;
+	}
+	if (m == 0) {
+		const float constant = (float)sqrt(1.0 / t->dims.phi_d);
+		for (uint32_t n = 0; n < count; n++)
+			out[n] = constant;
+	}
+}
+
+void spectrum_inverse_block(const struct spectrum_inverse *t, const struct spectrum_term *terms, const uint32_t *start, uint32_t first,
+                            float *plane)
+{
+	const struct kernels *kernels = kernels_get();
+	const struct lattice_dims d = t->dims;
+	float cosine[SPECTRUM_BLOCK];
+
+	memset(plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *plane);
+	if (start[d.phi_d] == start[0])
+		return;
+	for (uint32_t m = 0; m < d.phi_d; m++) {
+		if (start[m + 1] == start[m])
+			continue;
+		spectrum_inverse_cosines(t, m, first, 1, SPECTRUM_BLOCK, cosine);
+		kernels->spectrum_spread(terms + start[m], start[m + 1] - start[m], cosine, plane);
+	}
+	kernels->cdf97_plane(plane, d.theta_h, d.theta_d, t->levels, 0);
+}

@@ -1,0 +1,210 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "memory.h"
+#include "compact.h"
+#include "model/spectral/spectral_expand.h"
+#include "model/kernels.h"
+
+/* A table's unit: what is beyond a float's range is cut. */
+static float table_unit(double unit)
+{
+	return (float)(unit < TABLE_LARGEST ? unit : TABLE_LARGEST);
+}
+
+static float largest_value(const struct expansion *e)
+{
+	size_t cells = lattice_cells(e->dims);
+	float lane[16] = {0};
+	for (int c = 0; c < 3; c++) {
+		const float *plane = e->rgb[c];
+		size_t n = 0;
+		for (; n + 16 <= cells; n += 16)
+			for (int m = 0; m < 16; m++)
+				lane[m] = plane[n + (size_t)m] > lane[m] ? plane[n + (size_t)m] : lane[m];
+		for (; n < cells; n++)
+			lane[0] = plane[n] > lane[0] ? plane[n] : lane[0];
+	}
+	float largest = 0;
+	for (int m = 0; m < 16; m++)
+		largest = lane[m] > largest ? lane[m] : largest;
+	return largest;
+}
+
+static bp_status expanded_alloc(struct table *t, bp_error *error)
+{
+	t->row = (t->dims.phi_d + 1) * (uint32_t)t->channels;
+	t->slice = t->row * t->dims.theta_d;
+	t->store_bytes = (size_t)t->row * t->dims.theta_h * t->dims.theta_d * sizeof(uint16_t) + TABLE_SLACK_BYTES;
+	t->store = memory_alloc_kept(t->store_bytes);
+	if (!t->store)
+		return error_memory(error, t->store_bytes);
+	memset(t->store + t->store_bytes - TABLE_SLACK_BYTES, 0, TABLE_SLACK_BYTES);
+	return BP_OK;
+}
+
+/* The cell behind each row's last: its first again. */
+static void expanded_close(struct table *t)
+{
+	uint16_t *row = (uint16_t *)(void *)t->store;
+	const size_t rows = (size_t)t->dims.theta_h * t->dims.theta_d, channels = (size_t)t->channels;
+	for (size_t r = 0; r < rows; r++, row += t->row)
+		memcpy(row + channels * t->dims.phi_d, row, channels * sizeof *row);
+}
+
+static bp_status expanded_fill(struct table *t, const struct expansion *e, float largest, bp_error *error)
+{
+	bp_status status = expanded_alloc(t, error);
+	if (status)
+		return status;
+	/* The unit is a power of two times the expansion's: values keep their bits, and a table may be made before its largest is known. */
+	int exponent;
+	frexpf(largest, &exponent);
+	const float factor = largest >= 0x1p-125f ? ldexpf(1, -exponent) : 0;
+	t->unit = table_unit(ldexp(e->unit, exponent));
+	uint16_t *to = (uint16_t *)(void *)t->store;
+	size_t rows = (size_t)e->dims.theta_h * e->dims.theta_d, width = e->dims.phi_d;
+	for (size_t r = 0; r < rows; r++, to += t->row) {
+		const float *red = e->rgb[0] + r * width, *green = e->rgb[1] + r * width, *blue = e->rgb[2] + r * width;
+		if (t->channels == 3) {
+			for (size_t k = 0; k < width; k++) {
+				to[3 * k] = table_encode(red[k] * factor);
+				to[3 * k + 1] = table_encode(green[k] * factor);
+				to[3 * k + 2] = table_encode(blue[k] * factor);
+			}
+		} else {
+			for (size_t k = 0; k < width; k++)
+				to[k] = table_encode((red[k] * factor + green[k] * factor + blue[k] * factor) * (1.0f / 3));
+		}
+	}
+	expanded_close(t);
+	return BP_OK;
+}
+
+/* Without its store. */
+static bp_status table_new(struct lattice_dims dims, enum table_form form, int channels, struct table **out, bp_error *error)
+{
+	struct table *t = calloc(1, sizeof *t);
+	if (!t)
+		return error_memory(error, sizeof *t);
+	t->form = form;
+	t->channels = channels;
+	t->dims = dims;
+	t->scale = lattice_scale_of(t->dims);
+	t->top = (f32x4){(float)t->dims.theta_h - 1, (float)t->dims.theta_d - 1, (float)t->dims.phi_d, 0};
+	t->inner = t->top - (f32x4){0.5f, 0.5f, 0.5f, 0};
+	bool avx2 = kernels_avx2_usable();
+	if (form == TABLE_COMPACT)
+		t->kernels = (avx2 ? table_compact_avx2 : table_compact_plain)[channels == 3];
+	else
+		t->kernels = (avx2 ? table_expanded_avx2 : table_expanded_plain)[channels == 3];
+	*out = t;
+	return BP_OK;
+}
+
+bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error)
+{
+	if (!lattice_dims_legal(expansion->dims) || (channels != 1 && channels != 3) || (form != TABLE_EXPANDED && form != TABLE_COMPACT))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no such form of table (form %d, %d channels)", (int)form, channels);
+	struct table *t = NULL;
+	bp_status status = table_new(expansion->dims, form, channels, &t, error);
+	if (status)
+		return status;
+	const float largest = largest_value(expansion);
+	t->unit = table_unit(largest * expansion->unit);
+	status = (form == TABLE_COMPACT ? compact_fill : expanded_fill)(t, expansion, largest, error);
+	if (status)
+		table_free(t);
+	else
+		*out = t;
+	return status;
+}
+
+/* ---- from a model ---- */
+
+struct codes_target {
+	const struct spectral_model *model;
+	struct table *table;
+};
+
+static void codes_take(void *user, const struct spectral_block *block)
+{
+	const struct codes_target *target = user;
+	const struct spectral_model *m = target->model;
+	const struct table *t = target->table;
+	uint16_t *out = (uint16_t *)(void *)t->store + block->row * t->row + (size_t)block->column * (size_t)t->channels;
+
+	kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
+	                             spectral_most(m->unit), t->channels, out, t->row);
+}
+
+/* Straight from the fields: no table of floats in between, which would be twice the size. */
+static bp_status codes_build(const struct model *model, uint32_t layers, struct lattice_dims dims, bool half, int channels, struct table **out,
+                             bp_error *error)
+{
+	struct codes_target target = {model->spectral, NULL};
+	bp_status status = table_new(dims, TABLE_EXPANDED, channels, &target.table, error);
+	if (status)
+		return status;
+	target.table->unit = (float)(target.model->unit * SPECTRAL_CODES_UNIT);
+	status = expanded_alloc(target.table, error);
+	if (!status)
+		status = (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, codes_take, &target, error);
+	if (status) {
+		table_free(target.table);
+		return status;
+	}
+	expanded_close(target.table);
+	*out = target.table;
+	return BP_OK;
+}
+
+bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error)
+{
+	const struct spectral_model *m = model->profile == PROFILE_SPECTRAL ? model->spectral : NULL;
+	struct lattice_dims dims = model->dims;
+	struct expansion expansion;
+
+	if (half && !model_has_half(model->dims, &dims))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the extents %u x %u x %u have no halves", dims.theta_h, dims.theta_d, dims.phi_d);
+	if (m && !m->coefficient[0] && form == TABLE_EXPANDED && (channels == 1 || channels == 3) && m->unit >= 0x1p-60 && m->unit <= 0x1p60)
+		return codes_build(model, model->layer_count, dims, half, channels, out, error);
+	bp_status status = expansion_alloc(dims, &expansion, error);
+	if (status)
+		return status;
+	status = (half ? model_expand_half : model_expand)(model, 0, &expansion, error);
+	if (!status)
+		status = table_build(&expansion, form, channels, out, error);
+	expansion_free(&expansion);
+	return status;
+}
+
+void table_free(struct table *table)
+{
+	if (!table)
+		return;
+	free(table->store);
+	free(table);
+}
+
+size_t table_bytes(const struct table *table)
+{
+	return sizeof *table + table->store_bytes;
+}
+
+void table_evaluate(const struct table *table, const float wi[3], const float wo[3], float rgb[3])
+{
+	table->kernels.evaluate(table, wi, wo, rgb);
+}
+
+void table_nearest(const struct table *table, const float wi[3], const float wo[3], float rgb[3])
+{
+	table->kernels.nearest(table, wi, wo, rgb);
+}
+
+void table_evaluate_batch(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3])
+{
+	table->kernels.batch(table, count, wi, wo, rgb);
+}

@@ -1,0 +1,50 @@
+/*
+ * evaluate.h: a decoded table in the memory form a renderer evaluates from.
+ *
+ *     model_expand -> expansion -> table_build -> table_evaluate      or: model -> table_build_model -> table_evaluate
+ *
+ * A stored value belongs to its cell's LOWER CORNER. Interpolation is trilinear on the corners, in
+ * 1/sr, periodic in phi_d; beyond the last corner of theta_h and theta_d the last value stays. The
+ * expansion holds a value in every cell, also below the horizon, where it continues the material
+ * smoothly, so no "not measured" mark enters an interpolation; directions below the horizon give 0.
+ *
+ * Expanded form: per cell and channel one unsigned 16-bit float, 6 exponent bits and 10 of mantissa:
+ * relative error at most 2^-11 down to 2^-61 of the table's largest value, 0 below. Rows of phi_d
+ * hold one cell more, a copy of the first. MERL, RGB: 8,796,616 bytes.
+ *
+ * Compact form: compact.h.
+ */
+#ifndef MODEL_TABLE_EVALUATE_H
+#define MODEL_TABLE_EVALUATE_H
+
+#include "merl/lattice.h"
+#include "model/model.h"
+
+/* A table's largest value, in 1/sr, is cut to this: a float holds it with room to spare. */
+#define TABLE_LARGEST 1e34
+
+enum table_form { TABLE_EXPANDED = 0, TABLE_COMPACT = 1 };
+
+struct table; /* immutable once built: any number of threads may evaluate it */
+
+/* channels: 3 (RGB), or 1: the mean of the three, given back in all of them. The expansion is not needed afterwards. */
+bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error);
+/*
+ * The same of all of a model's layers, or, with `half`, of every second corner of it (model_expand_half), and quicker: of a decoded
+ * spectral profile's expanded form no table of floats is made. BP_ERROR_ARGUMENT where there is no half.
+ */
+bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error);
+void table_free(struct table *table); /* NULL is allowed */
+size_t table_bytes(const struct table *table);
+
+/*
+ * The value for one pair of directions in 1/sr, finite and >= 0 in each channel.
+ * 0 where either direction is below or on the horizon, is zero, infinite or NaN; other lengths than 1 are normalised.
+ */
+void table_evaluate(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
+/* The value of the cell into which the directions fall (the MERL database's own look-up). */
+void table_nearest(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
+/* table_evaluate for `count` pairs in separate arrays of components; the same values to the bit. */
+void table_evaluate_batch(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);
+
+#endif

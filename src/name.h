@@ -1,0 +1,18 @@
+/*
+ * name.h: what may be a material's name: UTF-8, 1 to 255 bytes, no control character (U+0000..U+001F,
+ * U+007F..U+009F), no '/', not "." and not "..". Names are ordered by their bytes (memcmp, the shorter first).
+ */
+#ifndef NAME_H
+#define NAME_H
+
+#include <stddef.h>
+
+#include "brdfpack.h"
+
+/* NULL when `count` bytes at `name` are a legal name, otherwise why not, as a clause: "it is empty". */
+const char *name_fault(const char *name, size_t count);
+
+/* -1, 0 or 1, in the archive's order. */
+int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes);
+
+#endif

@@ -1,0 +1,157 @@
+#include "error.h"
+#include "build_state.h"
+#include "tool/report.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void notice_take(void *user, enum source_notice kind, const char *path, const char *reason)
+{
+	struct build *build = user;
+	if (kind == SOURCE_DAMAGED) {
+		bp_error error;
+		error_set(&error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", reason);
+		report_error(path, NULL, &error);
+		build->totals.damaged++;
+	} else {
+		if (!build->options->quiet)
+			report_warning(path, NULL, "%s; skipped", reason);
+		build->totals.skipped++;
+	}
+}
+
+static bool is_listed(void *user, const char *name)
+{
+	struct build *build = user;
+	struct manifest_entry *entry = manifest_find(&build->manifest, name);
+	if (entry)
+		entry->found = true;
+	return entry != NULL;
+}
+
+static uint64_t item_weight(const struct source_item *source)
+{
+	return source->bytes != UINT64_MAX ? source->bytes : merl_file_bytes(LATTICE_MERL);
+}
+
+void build_inputs_collect(struct build *build)
+{
+	const struct source_options options = {
+		.notice = notice_take, .wanted = build->manifest.count > 0 ? is_listed : NULL, .user = build};
+	bp_error error;
+
+	if (source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count, &options, &build->sources,
+	                &error)) {
+		build_stop(build, NULL, NULL, &error);
+		return;
+	}
+	build->scanned = true;
+	for (size_t i = 0; i < build->sources.item_count; i++) {
+		if (items_add(&build->items, &build->sources.items[i], false, &error)) {
+			build_stop(build, NULL, NULL, &error);
+			return;
+		}
+		build->bytes_total += item_weight(&build->sources.items[i]);
+	}
+	build->listed_count = build->items.count;
+}
+
+/* Opens streams until one has a next member. */
+static bool member_find(struct build *build, struct source_item *member)
+{
+	bp_error error;
+	while (build_goes_on(build)) {
+		if (!build->stream) {
+			if (build->stream_next == build->sources.stream_count)
+				return false;
+			const char *path = build->sources.streams[build->stream_next++];
+			if (container_open(path, CONTAINER_SEQUENTIAL, &build->stream, &error)) {
+				build->stream = NULL;
+				report_error(path, NULL, &error);
+				build->totals.damaged++;
+				continue;
+			}
+		}
+		const char *path = build->sources.streams[build->stream_next - 1];
+		bool more = false;
+		bp_status status = source_stream_next(&build->sources, path, build->stream, member, &more, &error);
+		if (status == BP_ERROR_ARGUMENT) { /* an illegal or a second name */
+			build_stop(build, path, NULL, &error);
+		} else if (status) {
+			report_error(path, NULL, &error);
+			build->totals.damaged++;
+		} else if (more) {
+			return true;
+		} else {
+			container_close(build->stream);
+			build->stream = NULL;
+		}
+	}
+	return false;
+}
+
+/* One byte more than the largest file that can be right: so a worker sees that there is more. */
+static uint64_t member_bytes_most(const struct build *build)
+{
+	if (!build->options->any_lattice)
+		return merl_file_bytes(LATTICE_MERL) + 1;
+	return 12 + 24 * (uint64_t)LATTICE_CELLS_MAX + 1;
+}
+
+/* Copies the member into the slot; *bytes is how much. */
+static bp_status member_copy(struct build *build, int fd, uint64_t *bytes, bp_error *error)
+{
+	enum { CHUNK = 1 << 20 };
+	uint64_t most = member_bytes_most(build), done = 0;
+	bp_status status = BP_OK;
+	uint8_t *chunk = malloc(CHUNK);
+	if (!chunk)
+		return error_memory(error, CHUNK);
+	while (done < most && build_goes_on(build)) {
+		size_t wanted = most - done < CHUNK ? (size_t)(most - done) : CHUNK, got = 0;
+		status = container_read(build->stream, chunk, wanted, &got, error);
+		if (status || got == 0)
+			break;
+		for (size_t at = 0; at < got && !status;) {
+			ssize_t put = pwrite(fd, chunk + at, got - at, (off_t)(done + at));
+			if (put < 0 && errno != EINTR)
+				status = error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "cannot keep the member in memory: %s", strerror(errno));
+			at += put > 0 ? (size_t)put : 0;
+		}
+		if (status)
+			break;
+		done += got;
+		workers_wait(build->workers, 0); /* their pipes should not run full meanwhile */
+	}
+	free(chunk);
+	*bytes = done;
+	return status;
+}
+
+bool build_stream_next(struct build *build, struct job *job)
+{
+	struct source_item member;
+	bp_error error;
+
+	while (build_goes_on(build) && member_find(build, &member)) {
+		int slot;
+		while ((slot = workers_slot_take(build->workers)) < 0 && build_goes_on(build))
+			workers_wait(build->workers, -1);
+		size_t number = build->items.count;
+		if (items_add(&build->items, &member, true, &error)) {
+			build_stop(build, NULL, NULL, &error);
+			return false;
+		}
+		if (slot < 0)
+			return false;
+		*job = (struct job){.number = number, .name = build->items.item[number].source.name, .slot = slot};
+		bp_status status = member_copy(build, workers_slot_fd(build->workers, slot), &job->slot_bytes, &error);
+		if (!status)
+			return build_goes_on(build);
+		workers_slot_release(build->workers, slot);
+		build_refuse(build, number, &error);
+	}
+	return false;
+}

@@ -1,0 +1,116 @@
+#include "build_report.h"
+
+#include "tool/facts.h"
+#include "tool/json.h"
+#include "tool/report.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+enum { WARNINGS_MAX = 2, WARNING_BYTES = 200 };
+static const char *const ORIGIN_NAMES[] = {[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_KEPT] = "kept"};
+
+/* What is odd about a material that was packed nevertheless. */
+static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES])
+{
+	int count = 0;
+	if (outcome->source.nonfinite_count > 0)
+		snprintf(texts[count++], WARNING_BYTES, "%" PRIu64 " cells are NaN or infinite; they are treated as not measured",
+		         outcome->source.nonfinite_count);
+	for (int c = 0; c < 3; c++)
+		if (!outcome->head.colour[c].converged) {
+			snprintf(texts[count++], WARNING_BYTES, "the colour regression did not converge in %" PRIu32 " iterations (%s)",
+			         outcome->head.colour[c].iterations, CHANNEL_NAMES[c]);
+			break;
+		}
+	return count;
+}
+
+static void material_json(const struct item *item, const char *label, const struct outcome *outcome)
+{
+	struct json json = json_begin(stdout, false);
+	json_object(&json, NULL);
+	json_string(&json, "name", item->source.name);
+	json_string(&json, "path", label);
+	if (outcome->error.status) {
+		char text[1024];
+		error_describe(&outcome->error, text, sizeof text);
+		json_string(&json, "error", text);
+	} else {
+		char warnings[WARNINGS_MAX][WARNING_BYTES];
+		int count = warnings_list(outcome, warnings);
+		json_integer(&json, "bytes", outcome->head.record_bytes);
+		json_number(&json, "seconds", outcome->seconds);
+		json_object(&json, "cpu_seconds");
+		for (int stage = 0; stage < STAGE_COUNT; stage++)
+			json_number(&json, stage_name((enum stage)stage), outcome->stage_seconds[stage]);
+		json_close(&json);
+		json_string(&json, "record", ORIGIN_NAMES[outcome->origin]);
+		json_string(&json, "profile", profile_name(outcome->head.profile));
+		facts_brief(&json, &outcome->head);
+		json_array(&json, "warnings");
+		for (int i = 0; i < count; i++)
+			json_string(&json, NULL, warnings[i]);
+		json_close(&json);
+	}
+	json_close(&json);
+	json_finish(&json);
+	fflush(stdout); /* a line per material as it is done: someone may be watching */
+}
+
+void report_material(const struct item *item, const struct outcome *outcome, bool json, bool quiet)
+{
+	char label[ITEM_LABEL_BYTES];
+	item_label(item, label);
+	if (json)
+		material_json(item, label, outcome);
+	if (outcome->error.status) {
+		report_error(label, item->source.name, &outcome->error);
+		return;
+	}
+	if (outcome->source.nonfinite_count > 0 && !quiet) { /* a fault of the file; the rest stands in --json */
+		char warnings[WARNINGS_MAX][WARNING_BYTES];
+		warnings_list(outcome, warnings);
+		report_warning(label, item->source.name, "%s", warnings[0]);
+	}
+}
+
+static void summary_json(const char *output, bool written, const struct build_totals *totals)
+{
+	struct json json = json_begin(stdout, false);
+	json_object(&json, NULL);
+	json_bool(&json, "summary", true);
+	json_string(&json, "archive", output);
+	json_bool(&json, "written", written);
+	json_integer(&json, "materials", totals->packed);
+	json_integer(&json, "reused", totals->reused);
+	json_integer(&json, "kept", totals->kept);
+	json_integer(&json, "refused", totals->refused);
+	json_integer(&json, "missing", totals->missing);
+	json_integer(&json, "damaged_inputs", totals->damaged);
+	json_integer(&json, "skipped_inputs", totals->skipped);
+	json_integer(&json, "source_bytes", totals->source_bytes);
+	json_integer(&json, "bytes", totals->archive_bytes);
+	json_number(&json, "seconds", totals->seconds);
+	json_close(&json);
+	json_finish(&json);
+}
+
+void report_summary(const struct build_options *options, bool written, bool stopped, const struct build_totals *totals)
+{
+	const char *output = options->output;
+	if (options->json)
+		summary_json(output, written, totals);
+	if (written && totals_whole(totals))
+		return;
+	if (stopped) { /* how far the workers came is chance: no counts */
+		report_text("%s: not written%s", output, options->strict && totals->refused > 0 ? " (--strict)" : "");
+		return;
+	}
+	char damaged[64] = "";
+	if (totals->damaged > 0)
+		snprintf(damaged, sizeof damaged, ", %" PRIu64 " damaged inputs", totals->damaged);
+	report_text("%s: %s: %" PRIu64 " packed, %" PRIu64 " refused, %" PRIu64 " missing%s", output,
+	            written ? "written without some materials" : "not written", totals->packed, totals->refused, totals->missing,
+	            damaged);
+}

@@ -1,0 +1,53 @@
+/*
+ * build_report.h: what a build says about each material and at the end: messages on standard
+ * error, and with --json one line per material and a summary line on standard output.
+ */
+#ifndef TOOL_BUILD_BUILD_REPORT_H
+#define TOOL_BUILD_BUILD_REPORT_H
+
+#include <stdbool.h>
+
+#include "codec/record.h"
+#include "stage.h"
+#include "build.h"
+#include "items.h"
+
+/* Where a record comes from. */
+enum record_origin {
+	RECORD_FITTED,
+	RECORD_REUSED, /* taken unchanged from the older archive (--update) */
+	RECORD_KEPT    /* carried by its file (record_carried.h) */
+};
+
+/* What became of one material: everything that its report needs. */
+struct outcome {
+	bp_error error; /* status BP_OK: packed, and head is filled */
+	double seconds; /* in the worker */
+	double stage_seconds[STAGE_COUNT];
+	struct record_head head;
+	struct record_source source; /* the file */
+	enum record_origin origin;
+};
+
+struct build_totals {
+	uint64_t packed, refused; /* materials */
+	uint64_t missing;         /* materials that the manifest lists and no input has */
+	uint64_t damaged;         /* containers or members that could not be read */
+	uint64_t skipped;         /* paths that are no files; only a warning */
+	uint64_t reused, kept;    /* of the packed ones, by their records' origin */
+	uint64_t source_bytes, archive_bytes;
+	double seconds;
+};
+
+/* Nothing that was asked for is left out. */
+static inline bool totals_whole(const struct build_totals *totals)
+{
+	return totals->refused == 0 && totals->missing == 0 && totals->damaged == 0;
+}
+
+void report_material(const struct item *item, const struct outcome *outcome, bool json, bool quiet);
+
+/* After everything. Text only when something went wrong; without counts when the build was stopped before its end. */
+void report_summary(const struct build_options *options, bool written, bool stopped, const struct build_totals *totals);
+
+#endif

@@ -1,0 +1,124 @@
+#include "build_state.h"
+
+#include "archive/merge.h"
+#include "codec/record_carried.h"
+#include "error.h"
+#include "merl/sha256.h"
+#include "stage.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A member of a stream: `left` bytes in a memory file, from `offset` on. */
+struct slot_reader {
+	int fd;
+	uint64_t offset, left;
+};
+
+static bp_status slot_read(void *user, void *bytes, size_t capacity, size_t *count, bp_error *error)
+{
+	struct slot_reader *slot = user;
+	size_t wanted = capacity < slot->left ? capacity : (size_t)slot->left;
+	/* pread: the descriptor's position is shared with the parent and the other workers */
+	ssize_t got = pread(slot->fd, bytes, wanted, (off_t)slot->offset);
+	if (got < 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the copied member: %s", strerror(errno));
+	slot->offset += (uint64_t)got;
+	slot->left -= (uint64_t)got;
+	*count = (size_t)got;
+	return BP_OK;
+}
+
+/*
+ * For tests: BRDFPACK_TEST_CRASH=NAME lets the worker that gets this material die of SIGSEGV;
+ * NAME:1 only at the first attempt. BRDFPACK_TEST_SLEEP=SECONDS delays every material.
+ */
+static void test_hooks(const struct job *job)
+{
+	const char *crash = getenv("BRDFPACK_TEST_CRASH");
+	const char *seconds = getenv("BRDFPACK_TEST_SLEEP");
+	size_t name_bytes = strlen(job->name);
+	if (crash && !strncmp(crash, job->name, name_bytes) &&
+	    (!crash[name_bytes] || (!strcmp(crash + name_bytes, ":1") && job->attempt == 1))) {
+		signal(SIGSEGV, SIG_DFL);
+		raise(SIGSEGV);
+	}
+	if (seconds)
+		sleep((unsigned)atoi(seconds));
+}
+
+static void checksum_add(void *user, const void *bytes, size_t count)
+{
+	const enum stage before = stage_enter(STAGE_CHECKSUM);
+	sha256_add(user, bytes, count);
+	stage_enter(before);
+}
+
+/* The material's record: from the older archive, from the file itself, or, as nearly always, by fitting. */
+static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice, struct delivery *delivery,
+                            uint8_t **record, size_t *record_bytes, bp_error *error)
+{
+	const struct fit_options *options = &build->options->fit;
+	bp_status status = BP_OK;
+
+	delivery->origin = RECORD_REUSED;
+	if (build->previous)
+		status = archive_reuse(build->previous, name, &delivery->source, options, record, record_bytes, error);
+	if (status || *record)
+		return status;
+	delivery->origin = RECORD_KEPT;
+	status = record_carried(lattice, name, options, record, record_bytes, error);
+	if (status || *record)
+		return status;
+	delivery->origin = RECORD_FITTED;
+	return record_pack(lattice, name, &delivery->source, options, record, record_bytes, NULL, error);
+}
+
+/* Both in one piece. The record is freed. */
+static bp_status delivery_make(const struct delivery *delivery, uint8_t *record, size_t record_bytes, uint8_t **out, size_t *out_bytes,
+                               bp_error *error)
+{
+	uint8_t *whole = malloc(sizeof *delivery + record_bytes);
+	if (whole) {
+		memcpy(whole, delivery, sizeof *delivery);
+		memcpy(whole + sizeof *delivery, record, record_bytes);
+		*out = whole;
+		*out_bytes = sizeof *delivery + record_bytes;
+	}
+	free(record);
+	return whole ? BP_OK : error_memory(error, sizeof *delivery + record_bytes);
+}
+
+bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, size_t *out_bytes, bp_error *error)
+{
+	static struct source_cursor cursor; /* this process's own: it keeps a zip open from member to member */
+	const struct build *build = user;
+	struct slot_reader slot = {.fd = fd, .left = job->slot_bytes};
+	struct delivery delivery = {.origin = RECORD_FITTED};
+	uint8_t *record = NULL;
+	size_t record_bytes = 0;
+	struct lattice lattice = {0};
+	struct sha256 sha;
+	bp_status status;
+
+	test_hooks(job);
+	cursor.any_dims = build->options->any_lattice;
+	stage_enter(STAGE_READ);
+	sha256_start(&sha);
+	if (fd >= 0)
+		status = lattice_read(slot_read, &slot, checksum_add, &sha, build->options->any_lattice, &lattice, error);
+	else
+		status = source_item_read(&build->sources.items[job->number], &cursor, checksum_add, &sha, &lattice, error);
+	if (status)
+		return status;
+	delivery.source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
+	delivery.source.nonfinite_count = lattice.nonfinite_count;
+	sha256_finish(&sha, delivery.source.sha256);
+	stage_enter(STAGE_REST);
+	status = record_get(build, job->name, &lattice, &delivery, &record, &record_bytes, error);
+	lattice_free(&lattice);
+	return status ? status : delivery_make(&delivery, record, record_bytes, out, out_bytes, error);
+}

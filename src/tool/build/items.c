@@ -1,0 +1,53 @@
+#include "items.h"
+
+#include "error.h"
+#include "build_report.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bp_status items_add(struct items *items, const struct source_item *source, bool owned, bp_error *error)
+{
+	if (items->count == items->room) {
+		size_t room = items->room ? 2 * items->room : 128;
+		struct item *item = realloc(items->item, room * sizeof *item);
+		if (!item) {
+			if (owned)
+				source_item_clear(&(struct source_item){source->name, source->path, source->member, 0, 0});
+			return error_memory(error, room * sizeof *item);
+		}
+		items->item = item;
+		items->room = room;
+	}
+	items->item[items->count++] = (struct item){.source = *source, .owned = owned};
+	return BP_OK;
+}
+
+static int item_compare(const void *a, const void *b)
+{
+	return strcmp(((const struct item *)a)->source.name, ((const struct item *)b)->source.name);
+}
+
+void items_sort(struct items *items)
+{
+	if (items->count > 0)
+		qsort(items->item, items->count, sizeof *items->item, item_compare);
+}
+
+void items_free(struct items *items)
+{
+	for (size_t i = 0; i < items->count; i++) {
+		if (items->item[i].owned)
+			source_item_clear(&items->item[i].source);
+		free(items->item[i].outcome);
+	}
+	free(items->item);
+	*items = (struct items){0};
+}
+
+void item_label(const struct item *item, char label[ITEM_LABEL_BYTES])
+{
+	snprintf(label, ITEM_LABEL_BYTES, "%s%s%s", item->source.path, item->source.member ? ": " : "",
+	         item->source.member ? item->source.member : "");
+}

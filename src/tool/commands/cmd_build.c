@@ -1,0 +1,118 @@
+#include "tool/build/build.h"
+#include "tool/command.h"
+#include "tool/facts.h"
+#include "tool/options.h"
+#include "tool/report.h"
+#include "tool/workers.h"
+
+#include <unistd.h>
+
+enum { BUDGET_LEAST = 1000, BUDGET_MOST = 4000000, BUDGET_USUAL = 60400, EFFORT_USUAL = 5 };
+enum { OPTION_PROFILE = OPTION_LONG, OPTION_BUDGET, OPTION_MAX_ERROR, OPTION_EFFORT, OPTION_MANIFEST, OPTION_STRICT, OPTION_UPDATE,
+       OPTION_JSON, OPTION_ANY_LATTICE };
+
+static int build_main(const struct command *self, int argc, char **argv)
+{
+	static const struct option names[] = {
+		{"output", required_argument, NULL, 'o'},
+		{"jobs", required_argument, NULL, 'j'},
+		{"quiet", no_argument, NULL, 'q'},
+		{"profile", required_argument, NULL, OPTION_PROFILE},
+		{"budget", required_argument, NULL, OPTION_BUDGET},
+		{"max-error", required_argument, NULL, OPTION_MAX_ERROR},
+		{"effort", required_argument, NULL, OPTION_EFFORT},
+		{"manifest", required_argument, NULL, OPTION_MANIFEST},
+		{"strict", no_argument, NULL, OPTION_STRICT},
+		{"update", no_argument, NULL, OPTION_UPDATE},
+		{"json", no_argument, NULL, OPTION_JSON},
+		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
+		{0},
+	};
+	struct build_options options = {
+		.fit = {.profile = PROFILE_SPECTRAL, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL},
+		.workers = workers_usable_cores(),
+	};
+	bool has_budget = false;
+	int64_t number;
+	int option;
+
+	while ((option = options_next(self, argc, argv, "o:j:q", names)) >= 0) {
+		switch (option) {
+		case 'o': options.output = optarg; break;
+		case 'q': options.quiet = true; break;
+		case OPTION_MANIFEST: options.manifest = optarg; break;
+		case OPTION_STRICT: options.strict = true; break;
+		case OPTION_UPDATE: options.update = true; break;
+		case OPTION_JSON: options.json = true; break;
+		case OPTION_ANY_LATTICE: options.any_lattice = true; break;
+		case 'j':
+			if (!option_integer(self, "-j", optarg, 1, WORKERS_MAX, &number))
+				return EXIT_USAGE;
+			options.workers = (unsigned)number;
+			break;
+		case OPTION_PROFILE:
+			if (!profile_parse(optarg, &options.fit.profile))
+				return report_usage(self, "--profile: '%s' is neither 'spectral' nor 'paper'", optarg);
+			break;
+		case OPTION_BUDGET:
+			if (!option_bytes(self, "--budget", optarg, BUDGET_LEAST, BUDGET_MOST, &number))
+				return EXIT_USAGE;
+			options.fit.budget_bytes = (uint32_t)number;
+			has_budget = true;
+			break;
+		case OPTION_MAX_ERROR:
+			if (!option_number(self, "--max-error", optarg, 1e-6, 10, &options.fit.max_error))
+				return EXIT_USAGE;
+			break;
+		case OPTION_EFFORT:
+			if (!option_integer(self, "--effort", optarg, 1, 9, &number))
+				return EXIT_USAGE;
+			options.fit.effort = (int)number;
+			break;
+		}
+	}
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	if (!options.output || !*options.output)
+		return report_usage(self, "no output file; give one with -o OUT.bpk");
+	if (optind >= argc)
+		return report_usage(self, "no input; give MERL files, folders, tar or zip files");
+	if (has_budget && options.fit.max_error > 0)
+		return report_usage(self, "--budget and --max-error exclude each other");
+	if (options.fit.max_error > 0)
+		options.fit.budget_bytes = BUDGET_MOST;
+	options.inputs = argv + optind;
+	options.input_count = argc - optind;
+	return build_run(&options);
+}
+
+const struct command command_build = {
+	.name = "build",
+	.run = build_main,
+	.description = "pack measured materials into an archive",
+	.usage =
+		"Usage: brdfpack build -o OUT.bpk [OPTION]... INPUT...\n"
+		"Packs measured materials into an archive. INPUT is a MERL file, a folder (searched to the\n"
+		"bottom), or a tar or zip, plain or compressed. A material's name is its file's stem.\n"
+		"\n"
+		"  -o, --output OUT.bpk   the archive; an older one is replaced only by a whole one\n"
+		"  -j, --jobs N           worker processes (1 to 256; default: the usable cores);\n"
+		"                         the archive's bytes do not depend on it\n"
+		"      --profile NAME     'spectral' (unless told otherwise), or 'paper': the paper's method\n"
+		"      --budget BYTES     largest record of a material (1000 to 4000000; default 60400);\n"
+		"                         BYTES may end in k, M, KiB or MiB\n"
+		"      --max-error E      instead: the smallest record whose log RMSE is at most E\n"
+		"      --effort N         1 (fast) to 9 (small); default 5\n"
+		"      --manifest FILE    only the listed materials; where the list has sizes and SHA-256,\n"
+		"                         a file that differs is refused\n"
+		"      --strict           write no archive when a material is refused or missing\n"
+		"      --update           take the records of unchanged files (the same SHA-256, options and\n"
+		"                         codec) from the OUT.bpk that is there; what the inputs no longer\n"
+		"                         hold is dropped\n"
+		"      --json             one line per material and a summary line, on standard output\n"
+		"  -q, --quiet            no progress bar and no warnings\n"
+		"      --any-lattice      accept files of other extents than MERL's 90 90 180 (for tests)\n"
+		"  -h, --help             this text\n"
+		"\n"
+		"A file that cannot be packed is refused, the others are packed, and the exit code is 1.\n",
+};

@@ -1,0 +1,342 @@
+#include "tool/command.h"
+#include "tool/compare/compare.h"
+#include "tool/interrupt.h"
+#include "tool/options.h"
+#include "tool/report.h"
+#include "tool/selection.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "error.h"
+
+/* The plan of every pixel and light is kept: 0.7 GB at 512 pixels. */
+enum { COMPARE_SIZE_MAX = 512 };
+
+struct compare {
+	const char *archive_path, *folder, *images;
+	unsigned workers;
+	struct compare_report report;
+	struct selection selection;
+	struct source_list sources;
+	struct compare_item *items;
+	size_t count, printed, failed;
+	bool headed;      /* the table's head has been printed */
+	bool images_made; /* the pictures' folder is ours */
+	const char **wanted; /* the items' names, sorted: for source_scan */
+	struct compare_job job;
+};
+
+static int names_ascending(const void *a, const void *b)
+{
+	return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+static bool name_wanted(void *user, const char *name)
+{
+	const struct compare *compare = user;
+	return bsearch(&name, compare->wanted, compare->count, sizeof *compare->wanted, names_ascending) != NULL;
+}
+
+static void notice_show(void *user, enum source_notice kind, const char *path, const char *reason)
+{
+	(void)user, (void)kind;
+	report_warning(path, NULL, "%s", reason);
+}
+
+/* The materials that are compared: index entries of the selection. */
+static bp_status items_read(struct compare *compare, bp_error *error)
+{
+	bp_status status = BP_OK;
+	compare->count = (size_t)compare->selection.count;
+	compare->items = calloc(compare->count + 1, sizeof *compare->items);
+	compare->wanted = calloc(compare->count + 1, sizeof *compare->wanted);
+	if (!compare->items || !compare->wanted)
+		return error_memory(error, compare->count * sizeof *compare->items);
+	for (size_t n = 0; n < compare->count && status == BP_OK; n++) {
+		status = selection_entry(&compare->selection, n, &compare->items[n].entry, error);
+		compare->wanted[n] = compare->items[n].entry.name;
+	}
+	qsort(compare->wanted, compare->count, sizeof *compare->wanted, names_ascending);
+	return status;
+}
+
+static void item_fail(struct compare *compare, struct compare_item *item, const bp_error *error)
+{
+	report_error(compare->archive_path, item->entry.name, error);
+	item->done = item->failed = true;
+	compare->failed++;
+}
+
+/* Finds every item's measured file; those without one have failed. */
+static bp_status sources_find(struct compare *compare, bp_error *error)
+{
+	const char *inputs[1] = {compare->folder};
+	struct source_options options = {.notice = notice_show, .wanted = name_wanted, .user = compare};
+	bp_status status = source_scan(inputs, 1, &options, &compare->sources, error);
+	if (status != BP_OK)
+		return status;
+	for (size_t s = 0; s < compare->sources.stream_count; s++)
+		report_warning(compare->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
+	for (size_t n = 0; n < compare->count; n++) {
+		struct compare_item *item = &compare->items[n];
+		size_t low = 0, high = compare->sources.item_count;
+		while (low < high) {
+			size_t middle = (low + high) / 2;
+			if (strcmp(compare->sources.items[middle].name, item->entry.name) < 0)
+				low = middle + 1;
+			else
+				high = middle;
+		}
+		if (low < compare->sources.item_count && !strcmp(compare->sources.items[low].name, item->entry.name)) {
+			item->source = &compare->sources.items[low];
+			continue;
+		}
+		bp_error missing;
+		error_set(&missing, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s holds no measured file of that name", compare->folder);
+		item_fail(compare, item, &missing);
+	}
+	return BP_OK;
+}
+
+/* The folder for pictures, made if need be; checked before anything is computed. */
+static bp_status images_prepare(struct compare *compare, bp_error *error)
+{
+	const char *folder = compare->images;
+	struct stat status;
+	compare->images_made = mkdir(folder, 0777) == 0;
+	if (!compare->images_made && errno != EEXIST)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot create the folder: %s", folder, strerror(errno));
+	if (stat(folder, &status) != 0 || !S_ISDIR(status.st_mode))
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: not a folder", folder);
+	if (access(folder, W_OK | X_OK) != 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot write there: %s", folder, strerror(errno));
+	return BP_OK;
+}
+
+static bp_status images_write(const struct compare *compare, const struct compare_item *item, const uint8_t *png,
+                              bp_error *error)
+{
+	bp_status status = BP_OK;
+	for (int l = 0; l < LIGHTING_COUNT && status == BP_OK; l++) {
+		uint32_t bytes = item->result.png_bytes[l];
+		char *path;
+		if (!bytes)
+			continue;
+		if (asprintf(&path, "%s/%s-%s.png", compare->images, item->entry.name, lighting_name((enum lighting)l)) < 0)
+			return error_memory(error, 512);
+		status = file_write_whole(path, png, bytes, error);
+		free(path);
+		png += bytes;
+	}
+	return status;
+}
+
+/* Rows and failures appear in the items' order, as soon as all before are there. */
+static void rows_print(struct compare *compare)
+{
+	for (; compare->printed < compare->count && compare->items[compare->printed].done; compare->printed++) {
+		struct compare_item *item = &compare->items[compare->printed];
+		if (item->error)
+			report_error(compare->archive_path, item->entry.name, item->error);
+		free(item->error);
+		item->error = NULL;
+		if (item->failed)
+			continue;
+		if (!compare->headed)
+			compare_report_head(&compare->report);
+		compare->headed = true;
+		compare_report_row(&compare->report, item);
+	}
+	fflush(stdout);
+}
+
+static void result_take(void *user, const struct job_result *result)
+{
+	struct compare *compare = user;
+	struct compare_item *item = &compare->items[result->number];
+	bp_error error = result->error;
+	if (!error.status && result->record_bytes < sizeof item->result)
+		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is too short");
+	if (!error.status) {
+		memcpy(&item->result, result->record, sizeof item->result);
+		error.status = images_write(compare, item, result->record + sizeof item->result, &error);
+	}
+	if (error.status && (item->error = malloc(sizeof error))) {
+		*item->error = error;
+		item->failed = true;
+		compare->failed++;
+	} else if (error.status) {
+		item_fail(compare, item, &error); /* out of turn, but said */
+	}
+	item->done = true;
+	rows_print(compare);
+}
+
+/* Plans are made before the fork, so that the workers share their memory. */
+static bp_status plans_prepare(struct compare *compare, bp_error *error)
+{
+	struct record_head head;
+	for (size_t n = 0; n < compare->count; n++)
+		if (!compare->items[n].failed && !archive_entry_head(compare->selection.archive, &compare->items[n].entry, &head, NULL))
+			return comparison_plans_make(&compare->job.plans, head.dims, error);
+	return BP_OK;
+}
+
+/* No more processes than materials. */
+static unsigned worker_count(const struct compare *compare)
+{
+	size_t left = compare->count - compare->failed;
+	return left < compare->workers ? (unsigned)left : compare->workers;
+}
+
+static bp_status materials_measure(struct compare *compare, bp_error *error)
+{
+	struct workers *workers;
+	struct workers_options options = {.count = worker_count(compare), .work = compare_work, .work_user = &compare->job,
+	                                  .result = result_take, .result_user = compare};
+	compare->job.items = compare->items;
+	bp_status status = plans_prepare(compare, error);
+	if (status == BP_OK)
+		status = interrupt_install(&options.wake_fd, error);
+	if (status == BP_OK)
+		status = workers_start(&options, &workers, error);
+	if (status != BP_OK)
+		return status;
+	rows_print(compare);
+	for (size_t n = 0; n < compare->count && !interrupt_signal(); n++) {
+		if (compare->items[n].failed)
+			continue;
+		while (!workers_idle(workers) && !interrupt_signal())
+			workers_wait(workers, -1);
+		if (interrupt_signal())
+			break;
+		workers_submit(workers, &(struct job){.number = n, .name = compare->items[n].entry.name, .slot = -1});
+	}
+	while (workers_busy(workers) && !interrupt_signal())
+		workers_wait(workers, -1);
+	workers_stop(workers);
+	return BP_OK;
+}
+
+static void name_width_set(struct compare *compare)
+{
+	compare->report.name_width = (int)strlen("material");
+	for (size_t n = 0; n < compare->count; n++) {
+		int width = text_columns(compare->items[n].entry.name);
+		if (width > compare->report.name_width)
+			compare->report.name_width = width;
+	}
+}
+
+static int materials_compare(struct compare *compare)
+{
+	bp_error error;
+	bp_status status = items_read(compare, &error);
+	if (status == BP_OK && compare->images)
+		status = images_prepare(compare, &error);
+	if (status == BP_OK)
+		status = sources_find(compare, &error);
+	if (status == BP_OK && compare->failed == compare->count)
+		return EXIT_FAILED; /* nothing to compare: all of it was reported */
+	if (status == BP_OK) {
+		name_width_set(compare);
+		status = materials_measure(compare, &error);
+	}
+	if (interrupt_signal())
+		return 128 + interrupt_signal();
+	if (status == BP_OK)
+		status = compare_report_summary(&compare->report, compare->items, compare->count, compare->failed, &error);
+	if (status != BP_OK)
+		report_error(NULL, NULL, &error);
+	return status == BP_OK && !compare->failed && !compare->selection.incomplete ? EXIT_OK : EXIT_FAILED;
+}
+
+static int compare_main(const struct command *self, int argc, char **argv)
+{
+	enum { LIGHT = OPTION_LONG, SIZE, JSON, IMAGES };
+	static const struct option names[] = {{"light", required_argument, NULL, LIGHT}, {"size", required_argument, NULL, SIZE},
+	                                      {"json", no_argument, NULL, JSON}, {"images", required_argument, NULL, IMAGES},
+	                                      {"jobs", required_argument, NULL, 'j'}, {0}};
+	struct compare compare = {.workers = workers_usable_cores(), .report.lightings = LIGHTINGS_ALL};
+	enum lighting lighting;
+	int64_t jobs, size = SPHERE_SIZE;
+	int option;
+
+	while ((option = options_next(self, argc, argv, "j:", names)) >= 0)
+		switch (option) {
+		case LIGHT:
+			if (!lighting_find(optarg, &lighting))
+				return report_usage(self, "--light: '%s' is none of key, env and point", optarg);
+			compare.report.lightings = 1u << lighting;
+			break;
+		case SIZE:
+			if (!option_integer(self, "--size", optarg, 1, COMPARE_SIZE_MAX, &size))
+				return EXIT_USAGE;
+			break;
+		case JSON:
+			compare.report.json = true;
+			break;
+		case IMAGES:
+			compare.images = optarg;
+			break;
+		case 'j':
+			if (!option_integer(self, "-j", optarg, 1, WORKERS_MAX, &jobs))
+				return EXIT_USAGE;
+			compare.workers = (unsigned)jobs;
+			break;
+		}
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	if (argc - optind < 2)
+		return report_usage(self, "%s", argc == optind ? "no archive" : "no folder of measured files");
+	compare.archive_path = argv[optind];
+	compare.folder = argv[optind + 1];
+	if (!selection_open(&compare.selection, compare.archive_path, argv + optind + 2, argc - optind - 2))
+		return EXIT_FAILED;
+	compare.job = (struct compare_job){.archive = compare.selection.archive, .images = compare.images != NULL,
+	                                   .cursor.any_dims = true,
+	                                   .plans = {.lightings = compare.report.lightings, .size = (uint32_t)size}};
+	int code = EXIT_FAILED;
+	if (compare.selection.count > 0) {
+		code = materials_compare(&compare);
+	} else if (!compare.selection.incomplete) {
+		report_text("%s: no material in it", compare.archive_path);
+	}
+	if (code != EXIT_OK && compare.images_made)
+		rmdir(compare.images); /* where it holds pictures it stays */
+	comparison_plans_free(&compare.job.plans);
+	source_list_free(&compare.sources);
+	for (size_t n = 0; n < compare.count && compare.items; n++)
+		free(compare.items[n].error);
+	free(compare.items);
+	free(compare.wanted);
+	selection_close(&compare.selection);
+	return code;
+}
+
+const struct command command_compare = {
+	.name = "compare",
+	.run = compare_main,
+	.description = "measure how far an archive is from the measured files",
+	.usage = "Usage: brdfpack compare [OPTION]... ARCHIVE MEASURED [NAME]...\n"
+	         "Compares materials of the archive (all, or those named) with the MERL files of the same names in the folder\n"
+	         "MEASURED (or zip), and prints one row per material, then median, worst and mean:\n"
+	         "  PSNR       of a rendered sphere in dB, from 8-bit and from float sRGB values\n"
+	         "  log RMSE   root mean square of log10((decoded + 1e-3)/(measured + 1e-3))\n"
+	         "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
+	         "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"
+	         "  albedo     the largest share of light sent back, for directions 0 to 85 degrees from the normal\n"
+	         "Where the file is the one that was packed, the errors that the record tells of each layer are measured again and must agree.\n"
+	         "Cells that are invalid in the measured file count in nothing: they are black on both sides.\n"
+	         "\n"
+	         "      --light=NAME   key, env or point alone (all three)\n"
+	         "      --size=N       pixels of the sphere, 1 to 512 (160: what published figures are made with)\n"
+	         "      --images=DIR   also write DIR/NAME-LIGHT.png: measured, decoded, difference x10\n"
+	         "      --json         one JSON object per material, then a summary object\n"
+	         "  -j, --jobs=N       worker processes (one per usable core)\n"
+	         "  -h, --help         this text\n",
+};

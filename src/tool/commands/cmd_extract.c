@@ -1,0 +1,189 @@
+#include "tool/command.h"
+#include "tool/facts.h"
+#include "tool/folder.h"
+#include "tool/options.h"
+#include "tool/report.h"
+#include "tool/selection.h"
+
+#include "error.h"
+#include "memory_stream.h"
+#include "merl/merl_file.h"
+#include "output_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for one decoded table, kept from material to material as long as the lattice is the same. */
+struct table {
+	struct expansion expansion;
+	uint8_t *below;
+	double limit; /* of `below` */
+};
+
+static void table_free(struct table *table)
+{
+	expansion_free(&table->expansion);
+	free(table->below);
+	*table = (struct table){0};
+}
+
+static bool dims_equal(struct lattice_dims a, struct lattice_dims b)
+{
+	return a.theta_h == b.theta_h && a.theta_d == b.theta_d && a.phi_d == b.phi_d;
+}
+
+static bp_status table_fit(struct table *table, const struct model *model, bp_error *error)
+{
+	bp_status status;
+	if (table->below && dims_equal(table->expansion.dims, model->dims) && table->limit == model->horizon_limit)
+		return BP_OK;
+	table_free(table);
+	size_t cells = lattice_cells(model->dims);
+	status = expansion_alloc(model->dims, &table->expansion, error);
+	if (status)
+		return status;
+	table->below = malloc(cells);
+	status = table->below ? lattice_below_horizon(model->dims, model->horizon_limit, table->below, error)
+	                      : error_memory(error, cells);
+	table->limit = model->horizon_limit;
+	if (status)
+		table_free(table);
+	return status;
+}
+
+/* What to write: a decoded table with its record, the table alone, or the parameters. */
+enum form { FORM_MERL, FORM_PLAIN, FORM_JSON };
+
+/* The record to carry: NULL where it is damaged, but not in anything that this program decodes, which it has done. */
+static bp_status record_read(const struct selection *selection, const struct index_entry *entry, uint8_t **record, bp_error *error)
+{
+	struct record_head head;
+	const bp_status status = archive_entry_record(selection->archive, entry, &head, record, error);
+	return status == BP_ERROR_CHECKSUM ? BP_OK : status;
+}
+
+static bp_status merl_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
+                            const char *path, bool plain, struct table *table, bp_error *error)
+{
+	struct model *model = NULL;
+	uint8_t *record = NULL;
+	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
+	if (!status && !plain)
+		status = record_read(selection, entry, &record, error);
+	if (!status)
+		status = table_fit(table, model, error);
+	if (!status)
+		status = model_expand(model, 0, &table->expansion, error);
+	if (!status)
+		status = lattice_write_path(path, &table->expansion, table->below, record, record ? head->record_bytes : 0, error);
+	model_free(model);
+	free(record);
+	return status;
+}
+
+static bp_status json_write(const struct record_head *head, const char *path, bp_error *error)
+{
+	struct output_file file;
+	struct byte_buffer text = {0};
+	bp_status status;
+
+	FILE *memory = memory_stream_open(&text);
+	if (!memory)
+		return error_memory(error, BUFSIZ);
+	struct json json = json_begin(memory, true);
+	json_object(&json, NULL);
+	json_string(&json, "name", head->name);
+	facts_full(&json, head);
+	json_close(&json);
+	json_finish(&json);
+	fclose(memory);
+	status = text.failed ? error_memory(error, text.count) : output_file_open(path, &file, error);
+	if (!status) {
+		status = output_file_write(&file, text.bytes, text.count, error);
+		if (!status)
+			status = output_file_commit(&file, error);
+		else
+			output_file_discard(&file);
+	}
+	byte_buffer_free(&text);
+	return status;
+}
+
+/* One material into FOLDER/NAME.binary or .json. Names hold no '/', so it cannot land anywhere else. */
+static bool material_extract(struct selection *selection, uint64_t n, const char *folder, enum form form, struct table *table)
+{
+	struct index_entry entry;
+	struct record_head head;
+	bp_error error;
+	bp_status status;
+	char *path;
+	if (!selection_head(selection, n, &entry, &head))
+		return false;
+	path = folder_path(folder, entry.name, form == FORM_JSON ? "json" : "binary");
+	if (!path)
+		status = error_memory(&error, strlen(folder));
+	else
+		status = form == FORM_JSON ? json_write(&head, path, &error) : merl_write(selection, &entry, &head, path, form == FORM_PLAIN, table, &error);
+	free(path);
+	if (status)
+		report_error(selection->path, entry.name, &error);
+	return !status;
+}
+
+static int extract_main(const struct command *self, int argc, char **argv)
+{
+	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN };
+	static const struct option names[] = {
+		{"directory", required_argument, NULL, 'C'}, {"format", required_argument, NULL, OPTION_FORMAT},
+		{"plain", no_argument, NULL, OPTION_PLAIN}, {0}};
+	const char *folder = ".";
+	struct selection selection;
+	struct table table = {0};
+	bool json = false, plain = false, whole;
+	int option;
+
+	while ((option = options_next(self, argc, argv, "C:", names)) >= 0) {
+		if (option == 'C')
+			folder = optarg;
+		else if (option == OPTION_PLAIN)
+			plain = true;
+		else if (!strcmp(optarg, "json") || !strcmp(optarg, "merl"))
+			json = optarg[0] == 'j';
+		else
+			return report_usage(self, "--format: '%s' is neither 'merl' nor 'json'", optarg);
+	}
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	if (json && plain)
+		return report_usage(self, "--plain is about MERL files, --format json writes none");
+	int opened = selection_from(&selection, self, argv + optind, argc - optind);
+	if (opened != EXIT_OK)
+		return opened;
+	whole = !selection.incomplete;
+	if (selection.count > 0 && !folder_create(folder)) {
+		selection_close(&selection);
+		return EXIT_FAILED;
+	}
+	for (uint64_t i = 0; i < selection.count; i++)
+		whole &= material_extract(&selection, i, folder, json ? FORM_JSON : plain ? FORM_PLAIN : FORM_MERL, &table);
+	table_free(&table);
+	selection_close(&selection);
+	return whole ? EXIT_OK : EXIT_FAILED;
+}
+
+const struct command command_extract = {
+	.name = "extract",
+	.run = extract_main,
+	.description = "write materials as MERL files, or their parameters as JSON",
+	.usage = "Usage: brdfpack extract [-C DIR] [--format merl|json] [--plain] ARCHIVE [NAME]...\n"
+	         "Writes DIR/NAME.binary for the named materials, or for all. Cells wholly below the horizon\n"
+	         "are negative, all others hold the model's value. The negative ones carry the material's\n"
+	         "record, which a build with the same profile and a budget that holds it takes over as it\n"
+	         "is, unless a value was changed.\n"
+	         "\n"
+	         "  -C, --directory DIR  where to (default: here); created when it is missing\n"
+	         "      --format merl    MERL files (the default)\n"
+	         "      --format json    DIR/NAME.json with the parameters instead\n"
+	         "      --plain          no record: every cell below the horizon is -1\n"
+	         "  -h, --help           this text\n",
+};

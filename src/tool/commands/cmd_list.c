@@ -1,0 +1,193 @@
+#include "tool/command.h"
+#include "tool/facts.h"
+#include "tool/options.h"
+#include "tool/report.h"
+#include "tool/selection.h"
+
+#include "merl/sha256.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+struct totals {
+	uint64_t materials, record_bytes, source_bytes, failed;
+};
+
+/* A first walk over the names alone, which stand in the index, so that the table is aligned without keeping it. */
+static int widest_name(struct selection *selection)
+{
+	struct index_entry entry;
+	int widest = 8; /* "material" */
+	for (uint64_t i = 0; i < selection->count; i++)
+		if (!selection_entry(selection, i, &entry, NULL) && text_columns(entry.name) > widest)
+			widest = text_columns(entry.name);
+	return widest;
+}
+
+/* A number in nine columns: plain where four decimals say enough, else in powers of ten. */
+static void number_print(double value)
+{
+	double size = fabs(value);
+	printf(size == 0 || (size >= 5e-4 && size < 9999) ? " %9.4f" : " %9.2e", value);
+}
+
+static void row_print(const struct record_head *head, int width)
+{
+	printf("%s%*s %9" PRIu32 "  %-8s %6" PRIu32 "  %8.5f ", head->name, width - text_columns(head->name), "", head->record_bytes,
+	       profile_name(head->profile), head->layer_count, head_fidelity(head)->log_rmse);
+	for (int c = 0; c < 3; c++)
+		number_print(head->colour[c].diffuse);
+	putchar(' ');
+	for (int c = 0; c < 3; c++)
+		number_print(head->colour[c].specular);
+	putchar('\n');
+}
+
+static const char *section_name(unsigned type)
+{
+	switch (type) {
+	case SECTION_MARGINALS: return "marginals";
+	case SECTION_PAIR_HD: return "c_hd";
+	case SECTION_PAIR_HPHI: return "c_hphi";
+	case SECTION_SLICES: return "c_dphi|h";
+	case SECTION_FIELDS: return "fields";
+	case SECTION_PLANES: return "bit planes";
+	default: return "other";
+	}
+}
+
+/* Everything about one material. */
+static void material_print(const struct record_head *head)
+{
+	char sha256[SHA256_HEX_CHARACTERS + 1];
+	sha256_to_hex(head->source.sha256, sha256);
+	printf("%s\n", head->name);
+	printf("  record      %" PRIu32 " bytes, profile %s, ", head->record_bytes, profile_name(head->profile));
+	if (head->codec_version == RECORD_LAYERS_DROPPED)
+		printf("layers dropped, ");
+	else
+		printf("codec version %" PRIu32 ", ", head->codec_version);
+	if (head->options.max_error > 0)
+		printf("made for log RMSE <= %g", head->options.max_error);
+	else
+		printf("made for at most %" PRIu32 " bytes", head->options.budget_bytes);
+	printf(", effort %d\n", head->options.effort);
+	printf("  source      %" PRIu64 " bytes, SHA-256 %s\n", head->source.bytes, sha256);
+	printf("              %" PRIu64 " cells NaN or infinite\n", head->source.nonfinite_count);
+	printf("  lattice     %" PRIu32 " x %" PRIu32 " x %" PRIu32 " (theta_h, theta_d, phi_d), measured down to cosine %.4f\n",
+	       head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->horizon_limit);
+	for (uint32_t i = 0; i < head->layer_count; i++) {
+		const struct record_layer *layer = &head->layers[i];
+		printf("  layer %-3" PRIu32 "   %8" PRIu32 " bytes so far  log RMSE %.6f  cube-root RMSE %.6f  largest relative error %.4g\n", i,
+		       layer->bytes, layer->fidelity.log_rmse, layer->fidelity.cube_root_rmse, layer->fidelity.largest_relative);
+	}
+	for (uint32_t i = 0; i < head->section_count; i++) {
+		const struct record_section *section = &head->sections[i];
+		printf("  section %-3" PRIu32 " %8" PRIu32 " bytes  layer %u  type %u (%s)  codec %u.%u", i, section->bytes, section->layer,
+		       section->type, section_name(section->type), section->codec, section->version);
+		if (section->error == section->error)
+			printf("  error %.6g", section->error);
+		putchar('\n');
+	}
+	for (int c = 0; c < 3; c++) {
+		const struct colour_fit *fit = &head->colour[c];
+		printf("  %-6s      diffuse %.6g  specular %.6g  %" PRIu32 " iterations, %s, %.2f %% of the cells rejected\n",
+		       CHANNEL_NAMES[c], fit->diffuse, fit->specular, fit->iterations, fit->converged ? "converged" : "not converged",
+		       100 * fit->rejected);
+	}
+	printf("  left out   ");
+	for (int pair = 0; pair < 3; pair++)
+		if (head->left_out >> pair & 1)
+			printf(" %s", PAIR_NAMES[pair]);
+	printf("%s\n", head->left_out ? "" : " no pair");
+}
+
+static void material_json(const struct record_head *head)
+{
+	struct json json = json_begin(stdout, false);
+	json_object(&json, NULL);
+	json_string(&json, "name", head->name);
+	facts_full(&json, head);
+	json_close(&json);
+	json_finish(&json);
+}
+
+static void totals_json(const struct selection *selection, const struct totals *totals)
+{
+	struct json json = json_begin(stdout, false);
+	json_object(&json, NULL);
+	json_bool(&json, "summary", true);
+	json_string(&json, "archive", selection->path);
+	json_integer(&json, "materials", totals->materials);
+	json_integer(&json, "bytes", totals->record_bytes);
+	json_integer(&json, "source_bytes", totals->source_bytes);
+	json_close(&json);
+	json_finish(&json);
+}
+
+static void totals_print(const struct totals *totals)
+{
+	printf("%" PRIu64 " material%s, %" PRIu64 " bytes, made from %" PRIu64 " bytes", totals->materials,
+	       totals->materials == 1 ? "" : "s", totals->record_bytes, totals->source_bytes);
+	if (totals->record_bytes > 0)
+		printf(" (1/%.0f)", (double)totals->source_bytes / (double)totals->record_bytes);
+	putchar('\n');
+}
+
+static int list_main(const struct command *self, int argc, char **argv)
+{
+	static const struct option names[] = {{"json", no_argument, NULL, 'j' + OPTION_LONG}, {0}};
+	struct selection selection;
+	struct totals totals = {0};
+	bool json = false;
+	int option, width = 0;
+
+	while ((option = options_next(self, argc, argv, "", names)) >= 0)
+		json = true; /* the only option */
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	int opened = selection_from(&selection, self, argv + optind, argc - optind);
+	if (opened != EXIT_OK)
+		return opened;
+	if (selection.all && !json) {
+		width = widest_name(&selection);
+		printf("%-*s %9s  %-8s %6s  %8s   %-29s   %s\n", width, "material", "bytes", "profile", "layers", "log RMSE",
+		       "diffuse R, G, B (1/sr)", "specular R, G, B");
+	}
+	for (uint64_t i = 0; i < selection.count && !ferror(stdout); i++) {
+		struct index_entry entry;
+		struct record_head head;
+		if (!selection_head(&selection, i, &entry, &head)) {
+			totals.failed++;
+			continue;
+		}
+		if (json)
+			material_json(&head);
+		else if (selection.all)
+			row_print(&head, width);
+		else
+			material_print(&head);
+		totals.materials++;
+		totals.record_bytes += head.record_bytes;
+		totals.source_bytes += head.source.bytes;
+	}
+	if (json)
+		totals_json(&selection, &totals);
+	else if (selection.all)
+		totals_print(&totals);
+	bool whole = totals.failed == 0 && !selection.incomplete;
+	selection_close(&selection);
+	return whole ? EXIT_OK : EXIT_FAILED;
+}
+
+const struct command command_list = {
+	.name = "list",
+	.run = list_main,
+	.description = "show what is in an archive",
+	.usage = "Usage: brdfpack list [--json] ARCHIVE [NAME]...\n"
+	         "Prints one row per material, and totals. With names: everything about these materials.\n"
+	         "\n"
+	         "      --json   one JSON object per material, then a summary object\n"
+	         "  -h, --help   this text\n",
+};

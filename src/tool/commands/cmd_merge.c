@@ -1,0 +1,100 @@
+#include "tool/command.h"
+#include "tool/interrupt.h"
+#include "tool/options.h"
+#include "tool/report.h"
+
+#include "archive/merge.h"
+#include "error.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static bool stop(void)
+{
+	return interrupt_signal() != 0;
+}
+
+static int merge_write(bp_archive **archives, char **paths, size_t count, const struct copy_options *options, bool quiet)
+{
+	struct copy_totals totals = {0};
+	size_t failed = 0;
+	bp_error error;
+	int wake_fd;
+
+	if (interrupt_install(&wake_fd, &error) ||
+	    archive_merge((const struct bp_archive *const *)archives, count, options, &totals, &failed, &error)) {
+		report_error(totals.reading ? paths[failed] : options->output, NULL, &error);
+		return EXIT_FAILED;
+	}
+	if (totals.stopped) {
+		report_text("%s: interrupted; not written", options->output);
+		return 128 + interrupt_signal();
+	}
+	if (!quiet) {
+		printf("%s: %" PRIu64 " material%s", options->output, totals.copied, totals.copied == 1 ? "" : "s");
+		if (totals.replaced > 0)
+			printf(", %" PRIu64 " replaced by a later archive's", totals.replaced);
+		putchar('\n');
+	}
+	return EXIT_OK;
+}
+
+static int merge_main(const struct command *self, int argc, char **argv)
+{
+	enum { OPTION_REPLACE = OPTION_LONG };
+	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
+	                                      {"quiet", no_argument, NULL, 'q'},
+	                                      {"replace", no_argument, NULL, OPTION_REPLACE},
+	                                      {0}};
+	struct copy_options options = {.stop = stop};
+	bool quiet = false;
+	int option, result = EXIT_FAILED;
+	bp_error error;
+
+	while ((option = options_next(self, argc, argv, "o:q", names)) >= 0) {
+		if (option == 'o')
+			options.output = optarg;
+		options.replace |= option == OPTION_REPLACE;
+		quiet |= option == 'q';
+	}
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	if (!options.output || !*options.output)
+		return report_usage(self, "no output file; give one with -o OUT.bpk");
+	if (optind >= argc)
+		return report_usage(self, "no archive");
+
+	const size_t count = (size_t)(argc - optind);
+	bp_archive **archives = calloc(count, sizeof *archives);
+	if (!archives) {
+		error_memory(&error, count * sizeof *archives);
+		report_error(NULL, NULL, &error);
+		return EXIT_FAILED;
+	}
+	size_t opened = 0;
+	while (opened < count && !bp_archive_open(argv[optind + (int)opened], &archives[opened], &error))
+		opened++;
+	if (opened < count)
+		report_error(argv[optind + (int)opened], NULL, &error);
+	else
+		result = merge_write(archives, argv + optind, count, &options, quiet);
+	for (size_t n = 0; n < opened; n++)
+		bp_archive_close(archives[n]);
+	free(archives);
+	return result;
+}
+
+const struct command command_merge = {
+	.name = "merge",
+	.run = merge_main,
+	.description = "join archives, without re-encoding",
+	.usage = "Usage: brdfpack merge -o OUT.bpk [--replace] ARCHIVE...\n"
+	         "Joins archives; records are copied byte for byte. A name that stands in two of them is\n"
+	         "refused, and nothing is written.\n"
+	         "\n"
+	         "  -o, --output OUT.bpk  the new archive; it may be one of the inputs\n"
+	         "      --replace         of a name that several archives have, take the last one's\n"
+	         "  -q, --quiet           say nothing on success\n"
+	         "  -h, --help            this text\n",
+};

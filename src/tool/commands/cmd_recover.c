@@ -1,0 +1,50 @@
+#include "tool/command.h"
+#include "tool/options.h"
+#include "tool/report.h"
+
+#include "archive/recover.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+static void loss_report(void *user, const char *material, const bp_error *why)
+{
+	report_error(user, material, why);
+}
+
+static int recover_main(const struct command *self, int argc, char **argv)
+{
+	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {0}};
+	const char *output = NULL;
+	struct recovery recovery = {0};
+	bp_error error;
+	int option;
+
+	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
+		output = optarg;
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	if (!output)
+		return report_usage(self, "-o OUT.bpk is missing");
+	if (argc - optind != 1)
+		return report_usage(self, argc == optind ? "no archive" : "more than one archive");
+	if (archive_recover(argv[optind], output, loss_report, argv[optind], &recovery, &error) != BP_OK) {
+		report_error(NULL, NULL, &error);
+		return EXIT_FAILED;
+	}
+	printf("%s: %" PRIu64 " saved, %" PRIu64 " lost\n", output, recovery.saved, recovery.lost);
+	return recovery.lost ? EXIT_FAILED : EXIT_OK;
+}
+
+const struct command command_recover = {
+	.name = "recover",
+	.run = recover_main,
+	.description = "save what is intact in a damaged archive",
+	.usage = "Usage: brdfpack recover -o OUT.bpk DAMAGED.bpk\n"
+	         "Scans the damaged archive for records, with or without its index, and writes every record whose\n"
+	         "checksums hold into a new archive, unchanged. Says what was lost, as far as a record's head or the\n"
+	         "index tells; exit code 1 when anything was.\n"
+	         "\n"
+	         "  -o, --output FILE  the new archive; not the damaged one\n"
+	         "  -h, --help         this text\n",
+};

@@ -1,0 +1,223 @@
+#include "tool/command.h"
+#include "tool/facts.h"
+#include "tool/material.h"
+#include "tool/options.h"
+#include "tool/report.h"
+
+#include "error.h"
+#include "merl/merl_file.h"
+#include "render/figure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { BUDGET_BYTES = 60400, EFFORT = 5 };
+
+struct show_options {
+	const char *output, *reference;
+	bool svg;
+	struct fit_options fit;
+	int slice_count;
+	double theta_h[FIGURE_SLICES_MAX];
+};
+
+/* What is drawn: a measured table, a decoded one, or both, and where errors can be had, two profiles. */
+struct show {
+	struct material material;
+	struct lattice reference;   /* of --measured */
+	const struct lattice *truth; /* the reference, the material's own, or NULL */
+	struct density_source measured, decoded;
+	double error_before[LATTICE_EXTENT_MAX], error_after[LATTICE_EXTENT_MAX];
+	struct figure figure;
+};
+
+/* "5,20,40": 1 to 12 angles of 0 to 90 degrees. */
+static bool angles_parse(const struct command *command, const char *text, struct show_options *options)
+{
+	options->slice_count = 0;
+	for (const char *at = text; ; at++) {
+		char *end;
+		double value = strtod(at, &end);
+		if (end == at || !(value >= 0 && value <= 90) || (*end && *end != ',') || options->slice_count == FIGURE_SLICES_MAX) {
+			report_usage(command, "--theta-h: '%s' is not a list of 1 to %d angles from 0 to 90 degrees", text, FIGURE_SLICES_MAX);
+			return false;
+		}
+		options->theta_h[options->slice_count++] = value;
+		at = end;
+		if (!*at)
+			return true;
+	}
+}
+
+/* The measured file that belongs to an archived material: the path itself, or NAME.binary in that folder. */
+static bp_status reference_read(const char *path, const char *name, struct lattice *out, bp_error *error)
+{
+	struct stat status;
+	char *file = NULL;
+	bp_error reason;
+	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && asprintf(&file, "%s/%s.binary", path, name) < 0)
+		return error_memory(error, 512);
+	bp_status result = lattice_read_path(file ? file : path, NULL, NULL, true, out, &reason);
+	if (result != BP_OK)
+		error_set(error, result, reason.offset, "%s: %s", file ? file : path, reason.message);
+	free(file);
+	return result;
+}
+
+/* A measured file alone: fits it in memory, as `build` would. */
+static bp_status material_fit(struct show *show, const struct show_options *options, bp_error *error)
+{
+	struct material *material = &show->material;
+	bp_status status = model_fit(&material->lattice, &options->fit, &material->model, error);
+	if (status == BP_OK)
+		status = expansion_alloc(material->lattice.dims, &material->table, error);
+	if (status == BP_OK)
+		status = model_expand(material->model, 0, &material->table, error);
+	return status;
+}
+
+/* Errors per theta_h where there is a measured table, and what the densities are taken from. */
+static bp_status show_measure(struct show *show, bp_error *error)
+{
+	const struct material *material = &show->material;
+	uint8_t *counting = NULL;
+	bp_status status;
+
+	if (!show->truth) {
+		if ((status = material_counting_cells(&material->head, &counting, error)) != BP_OK)
+			return status;
+		status = density_source_decoded(&material->table, counting, &show->decoded, error);
+		free(counting);
+		return status;
+	}
+	struct lattice_dims a = show->truth->dims, b = material->table.dims;
+	if (a.theta_h != b.theta_h || a.theta_d != b.theta_d || a.phi_d != b.phi_d)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d, a.phi_d,
+		                 b.theta_h, b.theta_d, b.phi_d);
+	error_profile(show->truth, &material->table, show->error_after);
+	show->figure.error_after = show->error_after;
+	if (material->model->profile == PROFILE_PAPER) {
+		error_profile_uncoded(show->truth, material->model->colour, show->error_before);
+		show->figure.error_before = show->error_before;
+	}
+	if ((status = density_source_measured(show->truth, &show->measured, error)) != BP_OK)
+		return status;
+	return density_source_decoded(&material->table, show->truth->valid, &show->decoded, error);
+}
+
+static void figure_describe(struct show *show, const struct show_options *options)
+{
+	struct figure *figure = &show->figure;
+	const struct material *material = &show->material;
+	const char *profile = profile_name(material->model->profile);
+
+	figure->dims = material->table.dims;
+	snprintf(figure->title, sizeof figure->title, "%s, profile %s: %sdensity c(theta_d, phi_d | theta_h)", material->name, profile,
+	         show->truth ? "error, and " : "");
+	if (show->truth)
+		figure->rows[figure->row_count++] = (struct figure_row){"measured", &show->measured};
+	figure->rows[figure->row_count++] = (struct figure_row){"decoded", &show->decoded};
+	figure->slice_count = options->slice_count;
+	for (int s = 0; s < options->slice_count; s++) {
+		long cell = lround(sqrt(options->theta_h[s] / 90) * figure->dims.theta_h);
+		figure->slices[s] = cell < (long)figure->dims.theta_h ? (uint32_t)cell : figure->dims.theta_h - 1;
+	}
+}
+
+static int show_draw(struct show *show, const struct show_options *options)
+{
+	struct material *material = &show->material;
+	bp_error error;
+
+	if (material->measured) {
+		show->truth = &material->lattice;
+		if (material_fit(show, options, &error)) {
+			report_error(material->path, NULL, &error);
+			return EXIT_FAILED;
+		}
+	} else if (options->reference) {
+		if (reference_read(options->reference, material->name, &show->reference, &error)) {
+			report_error(NULL, NULL, &error); /* names the file */
+			return EXIT_FAILED;
+		}
+		show->truth = &show->reference;
+	}
+	if (show_measure(show, &error)) {
+		report_error(material->path, material->name, &error);
+		return EXIT_FAILED;
+	}
+	figure_describe(show, options);
+	if (figure_write(options->output, options->svg, &show->figure, &error)) {
+		report_error(NULL, NULL, &error); /* names the output */
+		return EXIT_FAILED;
+	}
+	return EXIT_OK;
+}
+
+static int show_main(const struct command *self, int argc, char **argv)
+{
+	enum { THETA_H = OPTION_LONG, MEASURED, PROFILE };
+	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {"theta-h", required_argument, NULL, THETA_H},
+	                                      {"measured", required_argument, NULL, MEASURED},
+	                                      {"profile", required_argument, NULL, PROFILE}, {0}};
+	struct show_options options = {.slice_count = 5, .theta_h = {5, 20, 40, 60, 80},
+	                               .fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_BYTES, .effort = EFFORT}};
+	int option;
+
+	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
+		switch (option) {
+		case 'o':
+			options.output = optarg;
+			break;
+		case THETA_H:
+			if (!angles_parse(self, optarg, &options))
+				return EXIT_USAGE;
+			break;
+		case MEASURED:
+			options.reference = optarg;
+			break;
+		case PROFILE:
+			if (!profile_parse(optarg, &options.fit.profile))
+				return report_usage(self, "--profile: '%s' is neither spectral nor paper", optarg);
+			break;
+		}
+	if (option != OPTIONS_END)
+		return options_exit_code(option);
+	if (!option_picture(self, options.output, ".svg", &options.svg))
+		return EXIT_USAGE;
+	struct show *show = calloc(1, sizeof *show);
+	if (!show) {
+		report_text("out of memory");
+		return EXIT_FAILED;
+	}
+	int code = material_load(self, argv + optind, argc - optind, &show->material);
+	if (code == EXIT_OK)
+		code = show_draw(show, &options);
+	density_source_free(&show->measured);
+	density_source_free(&show->decoded);
+	lattice_free(&show->reference);
+	material_free(&show->material);
+	free(show);
+	return code;
+}
+
+const struct command command_show = {
+	.name = "show",
+	.run = show_main,
+	.description = "draw what the model does to a material",
+	.usage = "Usage: brdfpack show [OPTION]... -o OUT.png|OUT.svg ARCHIVE NAME\n"
+	         "       brdfpack show [OPTION]... -o OUT.png|OUT.svg MERL-FILE [NAME]\n"
+	         "Draws the mean absolute error of every theta_h before and after coding, and the conditional pair-copula\n"
+	         "densities of theta_d and phi_d for some theta_h side by side: 1 (white) everywhere means that the two are\n"
+	         "independent given theta_h. Grey cells were not measured. A MERL file is fitted for the purpose.\n"
+	         "\n"
+	         "  -o, --output=FILE    the picture to write\n"
+	         "      --measured=PATH  the measured file of an archived material, or its folder; without it only the\n"
+	         "                       decoded densities are drawn\n"
+	         "      --theta-h=LIST   up to 12 angles in degrees (5,20,40,60,80)\n"
+	         "      --profile=NAME   how a MERL file is fitted: spectral or paper (paper)\n"
+	         "  -h, --help           this text\n",
+};

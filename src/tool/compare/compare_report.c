@@ -1,0 +1,209 @@
+#include "compare.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "tool/facts.h"
+#include "tool/json.h"
+#include "tool/report.h"
+
+/* The columns, and the keys of the JSON members. */
+enum figure {
+	FIGURE_PSNR, /* two per lighting: 8-bit, float */
+	FIGURE_LOG = 2 * LIGHTING_COUNT,
+	FIGURE_CUBE_ROOT,
+	FIGURE_RELATIVE,
+	FIGURE_ALBEDO_MEASURED,
+	FIGURE_ALBEDO,
+	FIGURE_BYTES,
+	FIGURE_COUNT
+};
+
+static const struct {
+	const char *key;
+	int width, digits;
+	bool low_is_bad;
+} FIGURES[FIGURE_COUNT] = {
+	{"psnr8_key", 6, 2, true},          {"psnr_key", 6, 2, true},   {"psnr8_env", 6, 2, true},
+	{"psnr_env", 6, 2, true},           {"psnr8_point", 6, 2, true}, {"psnr_point", 6, 2, true},
+	{"log_rmse", 8, 5, false},          {"cube_root_rmse", 9, 6, false}, {"largest_relative", 9, 4, false},
+	{"albedo_measured", 8, 4, false},   {"albedo", 8, 4, false},    {"bytes", 8, 0, false},
+};
+
+static bool figure_shown(const struct compare_report *report, int figure)
+{
+	return figure >= FIGURE_LOG || (report->lightings >> (figure / 2) & 1);
+}
+
+static void figures_of(const struct compare_item *item, double values[FIGURE_COUNT])
+{
+	const struct comparison *comparison = &item->result.comparison;
+	for (int l = 0; l < LIGHTING_COUNT; l++) {
+		values[FIGURE_PSNR + 2 * l] = comparison->psnr[l].eight_bit;
+		values[FIGURE_PSNR + 2 * l + 1] = comparison->psnr[l].real;
+	}
+	values[FIGURE_LOG] = comparison->fidelity.log_rmse;
+	values[FIGURE_CUBE_ROOT] = comparison->fidelity.cube_root_rmse;
+	values[FIGURE_RELATIVE] = comparison->fidelity.largest_relative;
+	values[FIGURE_ALBEDO_MEASURED] = comparison->measured.largest;
+	values[FIGURE_ALBEDO] = comparison->decoded.largest;
+	values[FIGURE_BYTES] = item->result.record_bytes;
+}
+
+void compare_report_head(const struct compare_report *report)
+{
+	if (report->json)
+		return;
+	printf("%-*s", report->name_width, "");
+	for (int l = 0; l < LIGHTING_COUNT; l++)
+		if (report->lightings >> l & 1)
+			printf("   PSNR %-6s", lighting_name((enum lighting)l));
+	printf("       log cube-root  largest relative error, at          albedo\n");
+	printf("%-*s", report->name_width, "material");
+	for (int l = 0; l < LIGHTING_COUNT; l++)
+		if (report->lightings >> l & 1)
+			printf("  8-bit  float");
+	printf("      RMSE      RMSE     value theta_h theta_d phi_d  measured  decoded    bytes\n");
+}
+
+static void text_row(const struct compare_report *report, const char *name, const double values[FIGURE_COUNT],
+                     const struct worst_cell *worst)
+{
+	printf("%s%*s", name, report->name_width - text_columns(name), "");
+	for (int f = 0; f < FIGURE_COUNT; f++) {
+		if (!figure_shown(report, f))
+			continue;
+		printf(f >= FIGURE_LOG ? "  " : " ");
+		if (f == FIGURE_RELATIVE) /* of any magnitude */
+			printf("%8.4g", values[f]);
+		else
+			printf("%*.*f", FIGURES[f].width, FIGURES[f].digits, values[f]);
+		if (f == FIGURE_RELATIVE && worst)
+			printf(" %7.2f %7.2f %5.1f", worst->theta_h, worst->theta_d, worst->phi_d);
+		else if (f == FIGURE_RELATIVE)
+			printf(" %21s", "");
+	}
+	putchar('\n');
+}
+
+static void figures_json(struct json *json, const struct compare_report *report, const double values[FIGURE_COUNT])
+{
+	for (int f = 0; f < FIGURE_COUNT; f++)
+		if (figure_shown(report, f))
+			json_number(json, FIGURES[f].key, values[f]);
+}
+
+static void json_row(const struct compare_report *report, const struct compare_item *item, const double values[FIGURE_COUNT])
+{
+	const struct worst_cell *worst = &item->result.comparison.worst;
+	const struct energy *decoded = &item->result.comparison.decoded;
+	struct json json = json_begin(stdout, false);
+	json_object(&json, NULL);
+	json_string(&json, "name", item->entry.name);
+	figures_json(&json, report, values);
+	json_string(&json, "recorded_errors", item->result.confirmed ? "confirmed" : "of another file");
+	json_object(&json, "largest_relative_at");
+	json_string(&json, "channel", CHANNEL_NAMES[worst->channel]);
+	json_integer(&json, "i", worst->i);
+	json_integer(&json, "j", worst->j);
+	json_integer(&json, "k", worst->k);
+	json_number(&json, "theta_h", worst->theta_h);
+	json_number(&json, "theta_d", worst->theta_d);
+	json_number(&json, "phi_d", worst->phi_d);
+	json_close(&json);
+	json_object(&json, "albedo_at");
+	json_string(&json, "channel", CHANNEL_NAMES[decoded->channel]);
+	json_number(&json, "theta_o", decoded->theta_o);
+	json_close(&json);
+	json_close(&json);
+	json_finish(&json);
+}
+
+void compare_report_row(const struct compare_report *report, const struct compare_item *item)
+{
+	double values[FIGURE_COUNT];
+	figures_of(item, values);
+	if (report->json)
+		json_row(report, item, values);
+	else
+		text_row(report, item->entry.name, values, &item->result.comparison.worst);
+}
+
+static int ascending(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+enum { MEDIAN, WORST, MEAN, SUMMARY_ROWS };
+static const char *const SUMMARY_NAMES[SUMMARY_ROWS] = {"median", "worst", "mean"};
+
+/* sorted[count], ascending. */
+static void summarise(const double *sorted, size_t count, bool low_is_bad, double out[SUMMARY_ROWS])
+{
+	double sum = 0;
+	for (size_t n = 0; n < count; n++)
+		sum += sorted[n];
+	out[MEDIAN] = (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
+	out[WORST] = low_is_bad ? sorted[0] : sorted[count - 1];
+	out[MEAN] = sum / (double)count;
+}
+
+static void summary_json(const struct compare_report *report, double rows[SUMMARY_ROWS][FIGURE_COUNT], size_t used,
+                         size_t confirmed, size_t failed)
+{
+	struct json json = json_begin(stdout, false);
+	json_object(&json, NULL);
+	json_bool(&json, "summary", true);
+	json_integer(&json, "materials", used);
+	json_integer(&json, "confirmed", confirmed);
+	json_integer(&json, "failed", failed);
+	for (int r = 0; used && r < SUMMARY_ROWS; r++) {
+		json_object(&json, SUMMARY_NAMES[r]);
+		figures_json(&json, report, rows[r]);
+		json_close(&json);
+	}
+	json_close(&json);
+	json_finish(&json);
+}
+
+bp_status compare_report_summary(const struct compare_report *report, const struct compare_item *items, size_t count,
+                                 size_t failed_count, bp_error *error)
+{
+	double rows[SUMMARY_ROWS][FIGURE_COUNT] = {{0}}, values[FIGURE_COUNT], out[SUMMARY_ROWS];
+	size_t used = 0, confirmed = 0;
+	double *column = malloc((count + 1) * sizeof *column);
+	if (!column)
+		return error_memory(error, count * sizeof *column);
+	for (size_t n = 0; n < count; n++)
+		confirmed += items[n].done && !items[n].failed && items[n].result.confirmed;
+	for (int f = 0; f < FIGURE_COUNT; f++) {
+		used = 0;
+		for (size_t n = 0; n < count; n++)
+			if (items[n].done && !items[n].failed) {
+				figures_of(&items[n], values);
+				column[used++] = values[f];
+			}
+		if (!used)
+			break;
+		qsort(column, used, sizeof *column, ascending);
+		summarise(column, used, FIGURES[f].low_is_bad, out);
+		for (int r = 0; r < SUMMARY_ROWS; r++)
+			rows[r][f] = out[r];
+	}
+	free(column);
+	if (report->json) {
+		summary_json(report, rows, used, confirmed, failed_count);
+		return BP_OK;
+	}
+	for (int r = 0; used && r < SUMMARY_ROWS; r++)
+		text_row(report, SUMMARY_NAMES[r], rows[r], NULL);
+	if (used && confirmed == count)
+		printf("The errors that the records tell of their layers are confirmed.\n");
+	else if (used)
+		printf("The errors that the records tell of their layers are confirmed for %zu of %zu materials; the others were packed from other "
+		       "files, or failed.\n", confirmed, count);
+	return BP_OK;
+}

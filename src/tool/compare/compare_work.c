@@ -1,0 +1,124 @@
+#include "compare.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "merl/sha256.h"
+
+/* Head, figures and PNG files in one malloc'ed block. */
+static bp_status result_pack(const struct compare_result *result, uint8_t *const png[LIGHTING_COUNT], uint8_t **out,
+                             size_t *out_bytes, bp_error *error)
+{
+	size_t bytes = sizeof *result, at = sizeof *result;
+	for (int l = 0; l < LIGHTING_COUNT; l++)
+		bytes += result->png_bytes[l];
+	uint8_t *block = malloc(bytes);
+	if (!block)
+		return error_memory(error, bytes);
+	memcpy(block, result, sizeof *result);
+	for (int l = 0; l < LIGHTING_COUNT; l++)
+		if (result->png_bytes[l]) {
+			memcpy(block + at, png[l], result->png_bytes[l]);
+			at += result->png_bytes[l];
+		}
+	*out = block;
+	*out_bytes = bytes;
+	return BP_OK;
+}
+
+static bp_status decoded_load(const struct compare_job *job, const struct compare_item *item, const struct record_head *head,
+                              uint32_t layers, struct expansion *table, bp_error *error)
+{
+	struct model *model;
+	bp_status status = archive_entry_load(job->archive, &item->entry, head, layers, &model, error);
+	if (status != BP_OK)
+		return status;
+	status = model_expand(model, 0, table, error);
+	model_free(model);
+	return status;
+}
+
+static bool figure_alike(double recorded, double measured)
+{
+	return fabs(recorded - measured) <= 1e-9 * fabs(measured);
+}
+
+static bp_status figures_confirm(const struct record_head *head, uint32_t layer, const struct fidelity *measured, bp_error *error)
+{
+	const struct fidelity *recorded = &head->layers[layer].fidelity;
+	if (figure_alike(recorded->log_rmse, measured->log_rmse) && figure_alike(recorded->cube_root_rmse, measured->cube_root_rmse) &&
+	    figure_alike(recorded->largest_relative, measured->largest_relative))
+		return BP_OK;
+	return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET,
+	                 "layer %u: the record tells errors of %.9g, %.9g, %.9g (log, cube-root, largest relative); measured: %.9g, %.9g, %.9g",
+	                 layer, recorded->log_rmse, recorded->cube_root_rmse, recorded->largest_relative, measured->log_rmse,
+	                 measured->cube_root_rmse, measured->largest_relative);
+}
+
+/* The layers below the last, of which `last` was measured. Uses up the table. */
+static bp_status layers_confirm(const struct compare_job *job, const struct compare_item *item, const struct record_head *head,
+                                const struct lattice *lattice, const struct fidelity *last, struct expansion *table, bp_error *error)
+{
+	bp_status status = figures_confirm(head, head->layer_count - 1, last, error);
+	for (uint32_t l = 0; status == BP_OK && l + 1 < head->layer_count; l++) {
+		struct fidelity measured;
+		status = decoded_load(job, item, head, l + 1, table, error);
+		if (status == BP_OK)
+			status = fidelity_measure(lattice, table, &measured, error);
+		if (status == BP_OK)
+			status = figures_confirm(head, l, &measured, error);
+	}
+	return status;
+}
+
+bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error)
+{
+	struct compare_job *compare = user;
+	const struct compare_item *item = &compare->items[job->number];
+	struct compare_result result = {.record_bytes = 0};
+	struct picture pictures[LIGHTING_COUNT] = {{0}};
+	uint8_t *png[LIGHTING_COUNT] = {NULL};
+	struct lattice lattice = {0};
+	struct expansion table = {0};
+	struct record_head head;
+	struct sha256 sha;
+	uint8_t digest[32];
+	bp_error reason;
+	bp_status status;
+
+	(void)fd;
+	sha256_start(&sha);
+	status = source_item_read(item->source, &compare->cursor, sha256_add, &sha, &lattice, &reason);
+	if (status != BP_OK) {
+		error_set(error, status, BP_NO_OFFSET, "%s: %s", item->source->path, reason.message);
+		goto out;
+	}
+	sha256_finish(&sha, digest);
+	if ((status = archive_entry_head(compare->archive, &item->entry, &head, error)) != BP_OK ||
+	    (status = expansion_alloc(head.dims, &table, error)) != BP_OK ||
+	    (status = decoded_load(compare, item, &head, 0, &table, error)) != BP_OK)
+		goto out;
+	result.record_bytes = head.record_bytes;
+	status = comparison_measure(&compare->plans, &lattice, &table, &result.comparison, compare->images ? pictures : NULL, error);
+	for (int l = 0; status == BP_OK && l < LIGHTING_COUNT; l++)
+		if (pictures[l].rgb) {
+			size_t bytes;
+			status = picture_encode_png(&pictures[l], &png[l], &bytes, error);
+			result.png_bytes[l] = status == BP_OK ? (uint32_t)bytes : 0;
+		}
+	result.confirmed = status == BP_OK && memcmp(digest, head.source.sha256, sizeof digest) == 0;
+	if (result.confirmed)
+		status = layers_confirm(compare, item, &head, &lattice, &result.comparison.fidelity, &table, error);
+	if (status == BP_OK)
+		status = result_pack(&result, png, record, record_bytes, error);
+out:
+	for (int l = 0; l < LIGHTING_COUNT; l++) {
+		picture_free(&pictures[l]);
+		free(png[l]);
+	}
+	lattice_free(&lattice);
+	expansion_free(&table);
+	return status;
+}

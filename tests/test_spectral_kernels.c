@@ -1,0 +1,177 @@
+/* The loops of spectral_values.inc.h: what they say, by the plain way, and alike on every processor. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "model/kernels.h"
+
+enum { N = 203 };
+
+static uint64_t state = 5;
+static double uniform(void)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return (double)(state >> 11) * 0x1p-53;
+}
+
+static void random_floats(float *x, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		x[i] = (float)(uniform() - 0.5);
+}
+
+/* Both tables, or the plain one twice. */
+static const struct kernels *table(int n)
+{
+	return n && kernels_avx2_usable() ? &kernels_avx2 : &kernels_plain;
+}
+
+static void logarithms_of_valid_cells_and_their_sum(void **unused)
+{
+	double b[N], factor = 512, sum[2], largest = 0;
+	uint8_t valid[N];
+	float out[2][N];
+	(void)unused;
+	for (int i = 0; i < N; i++) {
+		b[i] = uniform() * (i % 7 ? 1 : 1e4);
+		valid[i] = uniform() < 0.8;
+		largest = valid[i] && b[i] > largest ? b[i] : largest;
+	}
+	double want = 0;
+	for (int n = 0; n < 2; n++) {
+		sum[n] = table(n)->spectral_logs(b, valid, N, factor, out[n]);
+		assert_true(table(n)->spectral_largest(b, valid, N) == largest);
+	}
+	for (int i = 0; i < N; i++) {
+		const double l = valid[i] ? log2(1 + factor * b[i]) : 0;
+		assert_true(fabs((double)out[0][i] - l) < 3e-6);
+		want += (double)out[0][i];
+	}
+	assert_true(fabs(sum[0] - want) < 1e-9);
+	assert_true(sum[0] == sum[1]);
+	assert_memory_equal(out[0], out[1], sizeof out[0]);
+	memset(valid, 0, sizeof valid);
+	assert_true(kernels_get()->spectral_largest(b, valid, N) == 0);
+}
+
+static void moments_weigh_large_coefficients_less(void **unused)
+{
+	static float x[3][N];
+	double want[6] = {0}, got[2][6] = {{0}};
+	(void)unused;
+	for (int f = 0; f < 3; f++)
+		random_floats(x[f], N);
+	for (int i = 0; i < N; i++) {
+		const double r = (double)x[0][i], s = (double)x[1][i], t = (double)x[2][i], w = 1 / (1 + r * r + s * s + t * t);
+		const double product[6] = {r * r, r * s, r * t, s * s, s * t, t * t};
+		for (int n = 0; n < 6; n++)
+			want[n] += w * product[n];
+	}
+	for (int n = 0; n < 2; n++)
+		table(n)->spectral_moments((const float *const[]){x[0], x[1], x[2]}, N, got[n]);
+	for (int n = 0; n < 6; n++)
+		assert_true(fabs(got[0][n] - want[n]) < 1e-10);
+	assert_memory_equal(got[0], got[1], sizeof got[0]);
+}
+
+static void a_filled_cell_becomes_the_mean_of_its_neighbours(void **unused)
+{
+	float x[2][N], old[N], beside[4][N], filled[N];
+	(void)unused;
+	for (int i = 0; i < N; i++)
+		filled[i] = uniform() < 0.5 ? 1 : 0;
+	for (size_t length = 1; length <= N; length += length < 20 ? 1 : 61) {
+		random_floats(old, N);
+		for (int n = 0; n < 4; n++)
+			random_floats(beside[n], N);
+		for (int n = 0; n < 2; n++) {
+			memcpy(x[n], old, sizeof old);
+			table(n)->spectral_smooth(x[n], filled, (const float *const[]){beside[0], beside[1], beside[2], beside[3]}, length, 0.25f, -0.5f);
+		}
+		for (size_t i = 0; i < N; i++) {
+			const double before = i ? (double)old[i - 1] : 0.25, after = i + 1 < length ? (double)old[i + 1] : -0.5;
+			const double mean = (4 * (before + after) + (double)beside[0][i] + (double)beside[1][i] + (double)beside[2][i] + (double)beside[3][i]) / 12;
+			assert_true(i < length && filled[i] > 0 ? fabs((double)x[0][i] - mean) < 1e-6 : x[0][i] == old[i]);
+		}
+		assert_memory_equal(x[0], x[1], sizeof old);
+	}
+}
+
+static void coefficients_are_drawn_to_0_by_the_noise_around_them(void **unused)
+{
+	enum { STRIDE = N + 2 };
+	static float square[3][3 * STRIDE], x[2][N], old[N], factor[N];
+	const float threshold = 0.8f;
+	(void)unused;
+	random_floats(old, N);
+	for (int i = 0; i < N; i++)
+		factor[i] = (float)uniform();
+	for (int r = 0; r < 3; r++)
+		for (int s = 0; s < 3; s++)
+			for (int q = 0; q < N; q++)
+				square[r][s * STRIDE + q + 1] = r == 1 && s == 1 ? old[q] * old[q] : (float)(0.2 * uniform() * uniform());
+	for (int n = 0; n < 2; n++) {
+		memcpy(x[n], old, sizeof old);
+		table(n)->spectral_shrink(x[n], (const float *const[]){square[0] + 1, square[1] + 1, square[2] + 1}, STRIDE, factor, threshold, N);
+	}
+	for (int q = 0; q < N; q++) {
+		double energy = q ? 0.5 * pow((double)old[q - 1], 2) : 0;
+		energy += q + 1 < N ? 0.5 * pow((double)old[q + 1], 2) : 0;
+		for (int r = 0; r < 3; r++)
+			for (int s = 0; s < 3; s++)
+				energy += (double)square[r][s * STRIDE + q + 1];
+		const double keep = fmax(0, 1 - (double)threshold * (double)factor[q] / energy);
+		assert_true(fabs((double)x[0][q] - (double)old[q] * keep) < 1e-5);
+	}
+	assert_memory_equal(x[0], x[1], sizeof old);
+}
+
+static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
+{
+	enum { ROWS = 7, STRIDE = 16, OUT = 20 };
+	static float field[3][ROWS * STRIDE], rgb[2][3][ROWS * OUT];
+	const float base[3] = {2, 0, -9}, rotation[3][3] = {{0.6f, 0.8f, 0}, {-0.8f, 0.6f, 0}, {0, 0, 1}}, most = 33;
+	(void)unused;
+	for (int f = 0; f < 3; f++)
+		for (int i = 0; i < ROWS * STRIDE; i++)
+			field[f][i] = (float)(8 * uniform() - 4);
+	field[0][6] = 1e30f;
+	for (size_t width = 1; width <= STRIDE; width += 5)
+		for (int n = 0; n < 2; n++)
+			table(n)->spectral_values((const float *const[]){field[0], field[1], field[2]}, ROWS, width, STRIDE, base, rotation, most,
+			                         (float *const[]){rgb[n][0], rgb[n][1], rgb[n][2]}, OUT);
+	for (int c = 0; c < 3; c++)
+		for (int i = 0; i < ROWS; i++)
+			for (int k = 0; k < OUT; k++) {
+				const float got = rgb[0][c][i * OUT + k];
+				if (k >= STRIDE) {
+					assert_true(got == 0); /* never written */
+					continue;
+				}
+				double l = (double)base[c];
+				for (int f = 0; f < 3; f++)
+					l += (double)rotation[f][c] * (double)field[f][i * STRIDE + k];
+				l = l > (double)most ? (double)most : l > 0 ? l : 0;
+				assert_true(fabs((double)got - (exp2(l) - 1)) <= 1e-5 * exp2(l));
+				assert_true(l > 0 || got == 0);
+			}
+	assert_memory_equal(rgb[0], rgb[1], sizeof rgb[0]);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(logarithms_of_valid_cells_and_their_sum),
+		cmocka_unit_test(moments_weigh_large_coefficients_less),
+		cmocka_unit_test(a_filled_cell_becomes_the_mean_of_its_neighbours),
+		cmocka_unit_test(coefficients_are_drawn_to_0_by_the_noise_around_them),
+		cmocka_unit_test(values_are_0_at_and_below_the_logarithms_of_0),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

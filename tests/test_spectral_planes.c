@@ -1,0 +1,273 @@
+/* spectral_planes.h and bit_mixer.h: what goes in comes out, whatever it is, and a damaged stream ends. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "codec/spectral/spectral_planes.h"
+
+static uint64_t state = 5;
+static uint32_t random_below(uint32_t n)
+{
+	state = state * 6364136223846793005u + 1442695040888963407u;
+	return (uint32_t)((state >> 32) * n >> 32);
+}
+
+static void bands_cover_every_coefficient_once(void **unused)
+{
+	static const uint32_t sizes[][2] = {{4, 4}, {15, 15}, {16, 31}, {90, 90}, {4, 1024}, {257, 33}};
+	(void)unused;
+	for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+		const uint32_t h = sizes[s][0], d = sizes[s][1];
+		struct bands bands;
+		uint8_t *seen = calloc(h, d), *numbers;
+		bands_lay_out(h, d, &bands);
+		numbers = calloc(bands.blocks, 1);
+		for (uint32_t b = 0; b < bands.count; b++) {
+			const struct band *band = &bands.band[b];
+			assert_true(band->parent < (int32_t)b);
+			for (uint32_t y = 0; y < band->rows; y++)
+				for (uint32_t x = 0; x < band->columns; x++) {
+					assert_int_equal(seen[(band->row + y) * d + band->column + x]++, 0);
+					assert_true(y / BLOCK_EDGE < band->block_rows && x / BLOCK_EDGE < band->block_columns);
+				}
+			for (uint32_t y = 0; y < band->block_rows; y++)
+				for (uint32_t x = 0; x < band->block_columns; x++) {
+					const uint32_t at = band->block_at + y * band->block_stride + x;
+					assert_true(at >= band->block_stride + 1 && at + band->block_stride + 1 < bands.blocks);
+					assert_int_equal(numbers[at]++, 0);
+				}
+		}
+		for (uint32_t i = 0; i < h * d; i++)
+			assert_int_equal(seen[i], 1);
+		free(seen);
+		free(numbers);
+	}
+}
+
+/* Coefficients of many sizes, most of them 0. */
+static void coefficients_make(struct lattice_dims d, uint32_t one_in, float *const field[3])
+{
+	for (int f = 0; f < 3; f++)
+		for (size_t i = 0; i < lattice_cells(d); i++) {
+			const float size = (float)(1u << random_below(16)) * (1 + (float)(150 + random_below(850)) / 1000); /* beyond what settling thins */
+			field[f][i] = random_below(one_in) ? 0 : random_below(2) ? size : -size;
+		}
+}
+
+static void levels_come_back_from_any_prefix_of_units(void **unused)
+{
+	static const struct lattice_dims dims[] = {{4, 4, 4}, {5, 9, 7}, {17, 16, 9}, {33, 30, 12}};
+	(void)unused;
+	for (size_t n = 0; n < sizeof dims / sizeof *dims; n++)
+		for (uint32_t one_in = 2; one_in < 200; one_in *= 8) {
+			const struct lattice_dims d = dims[n];
+			const size_t cells = lattice_cells(d);
+			float *block = malloc(3 * cells * sizeof *block), *const field[3] = {block, block + cells, block + 2 * cells}, centre[2];
+			struct planes *in = NULL, *out = NULL;
+			struct byte_buffer bytes = {0};
+			struct range_encoder encoder;
+			struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
+			struct spectral_level *levels = NULL;
+			uint32_t count = 0, found = 0;
+
+			coefficients_make(d, one_in, field);
+			assert_int_equal(planes_create(d, 1, &in, NULL), BP_OK);
+			assert_int_equal(planes_create(d, 0, &out, NULL), BP_OK);
+			planes_quantise(in, field, 1, 0);
+			planes_start(in, planes_settle(in, 0, centre));
+			const uint32_t units = planes_units(in), end = units - units / 5;
+			range_encoder_start(&encoder, &bytes);
+			for (uint32_t u = 0; u < end; u++)
+				planes_encode_unit(in, &coder, u);
+			range_encoder_end(&encoder);
+			planes_start(out, in->planes);
+			range_decoder_start(&coder.decoder, bytes.bytes, bytes.count);
+			for (uint32_t u = 0; u < end; u++)
+				assert_int_equal(planes_decode_unit(out, &coder, u, NULL), BP_OK);
+			assert_true(range_decoder_ended(&coder.decoder));
+			assert_int_equal(planes_collect(out, end, &levels, &count, NULL), BP_OK);
+			for (uint32_t i = 0; i < count; i++) {
+				const uint32_t f = (uint32_t)(levels[i].at / cells), at = (uint32_t)(levels[i].at % cells), lane = at % d.phi_d;
+				const uint32_t even = (d.phi_d + 1) / 2, harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
+				const uint32_t lowest = spectral_lowest_plane(in->planes, d.phi_d, end, f, harmonic);
+				const int32_t size = (int32_t)((uint32_t)fabsf(field[f][at]) >> lowest << lowest);
+				assert_int_equal(levels[i].level, field[f][at] < 0 ? -size : size);
+				field[f][at] = 0;
+			}
+			/* And nothing is missing: what is left is below its plane. */
+			for (size_t i = 0; i < 3 * cells; i++) {
+				const uint32_t f = (uint32_t)(i / cells), lane = (uint32_t)(i % cells % d.phi_d), even = (d.phi_d + 1) / 2;
+				const uint32_t harmonic = lane < even ? 2 * lane : 2 * (lane - even) + 1;
+				found += (uint32_t)fabsf(block[i]) >> spectral_lowest_plane(in->planes, d.phi_d, end, f, harmonic) != 0;
+			}
+			assert_int_equal(found, 0);
+			free(levels);
+			byte_buffer_free(&bytes);
+			planes_free(in);
+			planes_free(out);
+			free(block);
+		}
+}
+
+/* One harmonic with a lone level, another with the same in company; sizes of 0.9 steps. */
+static void a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays(void **unused)
+{
+	const struct lattice_dims d = {16, 16, 40};
+	const size_t cells = lattice_cells(d);
+	float *block = calloc(3 * cells, sizeof *block), *const field[3] = {block, block + cells, block + 2 * cells}, centre[2];
+	struct planes *planes = NULL;
+	(void)unused;
+
+	assert_int_equal(planes_create(d, 1, &planes, NULL), BP_OK);
+	field[0][(3 * 16 + 3) * 40 + 2] = 0.9f;
+	for (int y = 2; y < 5; y++)
+		for (int x = 2; x < 5; x++)
+			field[0][(y * 16 + x) * 40 + 15] = y == 3 && x == 3 ? -0.9f : 2.1f;
+	planes_quantise(planes, field, 1, 0.4f);
+	assert_int_equal(planes->levels_count, 3);
+	/* The company comes first in the pool. */
+	assert_int_equal(planes->levels[1].level[3 * 8 + 3], -1);
+	assert_int_equal(planes->levels[2].level[3 * 8 + 3], 1);
+	assert_int_equal(planes_settle(planes, 0.4f, centre), 2);
+	assert_int_equal(planes->levels[1].level[3 * 8 + 3], -1);
+	assert_int_equal(planes->levels[2].level[3 * 8 + 3], 0);
+	/* The centres are those of what is left, to the eight bits that are kept. */
+	assert_true(fabsf(centre[0] + 0.1f) < 0.003f && fabsf(centre[1] - 0.1f) < 0.003f);
+	/* Alone and nothing else: no plane is left. */
+	memset(block, 0, 3 * cells * sizeof *block);
+	field[2][(3 * 16 + 3) * 40 + 2] = 0.9f;
+	planes_quantise(planes, field, 1, 0.4f);
+	assert_int_equal(planes->levels_count, 2);
+	assert_int_equal(planes_settle(planes, 0.4f, centre), 0);
+	planes_free(planes);
+	free(block);
+}
+
+static void the_lowest_plane_is_that_of_the_last_unit_coded(void **unused)
+{
+	const uint32_t planes = 5, harmonics = 7;
+	(void)unused;
+	for (uint32_t end = 0; end <= 3 * planes * harmonics; end++) {
+		uint32_t lowest[3][7];
+		for (uint32_t f = 0; f < 3; f++)
+			for (uint32_t m = 0; m < harmonics; m++)
+				lowest[f][m] = planes;
+		for (uint32_t u = 0; u < end; u++)
+			lowest[u / harmonics % 3][u % harmonics] = planes - 1 - u / (3 * harmonics);
+		for (uint32_t f = 0; f < 3; f++)
+			for (uint32_t m = 0; m < harmonics; m++)
+				assert_int_equal(spectral_lowest_plane(planes, harmonics, end, f, m), lowest[f][m]);
+	}
+}
+
+static void arbitrary_bytes_decode_to_something_legal(void **unused)
+{
+	const struct lattice_dims d = {17, 16, 9};
+	(void)unused;
+	for (int trial = 0; trial < 20; trial++) {
+		struct planes *planes = NULL;
+		struct spectral_level *levels = NULL;
+		struct mixed_coder coder = {.tables = mixer_tables_get()};
+		uint8_t bytes[500];
+		uint32_t count;
+		for (size_t i = 0; i < sizeof bytes; i++)
+			bytes[i] = (uint8_t)(trial == 0 ? 0 : trial == 1 ? 255 : random_below(256));
+		assert_int_equal(planes_create(d, 0, &planes, NULL), BP_OK);
+		planes_start(planes, SPECTRAL_PLANES_MAX);
+		range_decoder_start(&coder.decoder, bytes, sizeof bytes);
+		for (uint32_t u = 0; u < planes_units(planes); u++)
+			assert_int_equal(planes_decode_unit(planes, &coder, u, NULL), BP_OK);
+		assert_int_equal(planes_collect(planes, planes_units(planes), &levels, &count, NULL), BP_OK);
+		for (uint32_t i = 0; i < count; i++)
+			assert_true(levels[i].level != 0 && abs(levels[i].level) < 1 << SPECTRAL_PLANES_MAX && levels[i].at < 3 * lattice_cells(d));
+		free(levels);
+		planes_free(planes);
+	}
+}
+
+static void the_mixer_learns_what_a_bit_depends_on(void **unused)
+{
+	struct byte_buffer bytes = {0};
+	struct range_encoder encoder;
+	struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
+	mixer_context contexts[4][4];
+	struct mixer_weights weights = {{MIXER_WEIGHT_START, MIXER_WEIGHT_START, MIXER_WEIGHT_START, MIXER_WEIGHT_START}};
+	(void)unused;
+	for (int i = 0; i < 16; i++)
+		contexts[i / 4][i % 4] = MIXER_CONTEXT_EVEN;
+	range_encoder_start(&encoder, &bytes);
+	for (int i = 0; i < 20000; i++) {
+		/* The bit is what context 2 says, nineteen times of twenty; the others know nothing. */
+		const uint32_t truth = random_below(2), bit = random_below(20) ? truth : !truth;
+		mixer_context *const context[4] = {&contexts[0][random_below(4)], &contexts[1][random_below(4)], &contexts[2][truth], &contexts[3][0]};
+		mixed_bit(&coder, 0, context, &weights, bit);
+	}
+	range_encoder_end(&encoder);
+	/* The entropy is 0.286 bits each; contexts of 60 bits' memory and four weights cost a little. */
+	assert_true((double)bytes.count * 8 < 20000 * 0.286 * 1.08);
+	byte_buffer_free(&bytes);
+}
+
+static void a_pair_of_contexts_and_one_alone_come_near_the_entropy(void **unused)
+{
+	(void)unused;
+	for (int pair = 0; pair < 2; pair++) {
+		struct byte_buffer bytes = {0};
+		struct range_encoder encoder;
+		struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
+		mixer_context contexts[2] = {MIXER_CONTEXT_EVEN, MIXER_CONTEXT_EVEN};
+		const double bits = 20000;
+		double ones = 0;
+		range_encoder_start(&encoder, &bytes);
+		for (int i = 0; i < bits; i++) {
+			const uint32_t bit = !random_below(20);
+			ones += bit;
+			if (pair)
+				mixed_bit_pair(&coder, 0, &contexts[0], &contexts[1], bit);
+			else
+				mixed_bit_alone(&coder, 0, &contexts[0], bit);
+		}
+		range_encoder_end(&encoder);
+		const double entropy = ones * log2(bits / ones) + (bits - ones) * log2(bits / (bits - ones));
+		/* A memory of n bits costs about 1/(4 n ln 2) of a bit each. */
+		assert_true((double)bytes.count * 8 < entropy + bits * (pair ? 1.5 / (4 * 40 * 0.69) : 1.5 / (4 * 250 * 0.69)) + 64);
+		assert_true((double)bytes.count * 8 > entropy);
+		byte_buffer_free(&bytes);
+	}
+}
+
+static void contexts_stay_probabilities_whatever_they_see(void **unused)
+{
+	const struct mixer_tables *tables = mixer_tables_get();
+	(void)unused;
+	for (uint32_t bit = 0; bit < 2; bit++)
+		for (uint32_t seen = 0; seen <= MIXER_SEEN_MAX_ALONE; seen++)
+			for (uint32_t p = 1; p < 1u << MIXER_PROBABILITY_BITS; p += p < 300 || p > (1u << MIXER_PROBABILITY_BITS) - 300 ? 1 : 4001) {
+				const uint32_t rate = tables->rate[seen], other = (1u << MIXER_PROBABILITY_BITS) - p;
+				const mixer_context context = mixer_context_learnt(tables, p << 10 | seen, bit, 250);
+				assert_int_equal(context >> 10, bit ? p + other / 64 * rate / 1024 : p - p / 64 * rate / 1024);
+				assert_true(context >> 10 > 0);
+				assert_int_equal(context & 1023, seen < 250 ? seen + 1 : seen);
+			}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(bands_cover_every_coefficient_once),
+		cmocka_unit_test(levels_come_back_from_any_prefix_of_units),
+		cmocka_unit_test(a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays),
+		cmocka_unit_test(the_lowest_plane_is_that_of_the_last_unit_coded),
+		cmocka_unit_test(arbitrary_bytes_decode_to_something_legal),
+		cmocka_unit_test(the_mixer_learns_what_a_bit_depends_on),
+		cmocka_unit_test(a_pair_of_contexts_and_one_alone_come_near_the_entropy),
+		cmocka_unit_test(contexts_stay_probabilities_whatever_they_see),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

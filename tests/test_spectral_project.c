@@ -1,0 +1,104 @@
+/* spectral_project.c: invalid cells get values that fewer coefficients tell, and valid cells stay. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "model/spectral/spectral.h"
+#include "model/spectral/spectrum.h"
+
+static const struct lattice_dims DIMS = {32, 30, 24};
+
+/* Smooth in all three angles; another in each channel. */
+static float truth_at(int channel, size_t i)
+{
+	const double k = (double)(i % DIMS.phi_d), j = (double)(i / DIMS.phi_d % DIMS.theta_d), h = (double)(i / DIMS.phi_d / DIMS.theta_d);
+	return (float)(2 * cos(0.11 * h + 0.2 * channel) * cos(0.07 * j) + 0.5 * cos(3.14159265 * 2 * (k + 0.5) / DIMS.phi_d) * sin(0.1 * j + 0.05 * h));
+}
+
+static int by_size(const void *a, const void *b)
+{
+	const float x = fabsf(*(const float *)a), y = fabsf(*(const float *)b);
+	return x < y ? 1 : x > y ? -1 : 0;
+}
+
+/* Checks that valid cells are what they were; the root of the energy in all but the `kept` largest coefficients. Uses up the table. */
+static double rest_of(struct spectrum *spectrum, float *const table[3], const uint8_t *valid, const float base[3], size_t kept)
+{
+	const size_t cells = lattice_cells(DIMS);
+	double sum = 0;
+	for (int c = 0; c < 3; c++) {
+		for (size_t i = 0; i < cells; i++)
+			assert_true(!valid[i] || table[c][i] == truth_at(c, i));
+		spectrum_forward(spectrum, table[c], base[c]);
+		qsort(table[c], cells, sizeof(float), by_size);
+		for (size_t i = kept; i < cells; i++)
+			sum += (double)table[c][i] * (double)table[c][i];
+	}
+	return sqrt(sum);
+}
+
+static void what_a_record_cannot_hold_becomes_less_and_valid_cells_stay(void **unused)
+{
+	const size_t cells = lattice_cells(DIMS);
+	float *block = malloc(3 * cells * sizeof *block), *const table[3] = {block, block + cells, block + 2 * cells};
+	const float base[3] = {0.1f, 0, -0.1f};
+	uint8_t *valid = malloc(cells);
+	struct spectrum *spectrum = NULL;
+	double rest[4];
+	(void)unused;
+
+	assert_int_equal(spectrum_create(DIMS, &spectrum, NULL), BP_OK);
+	for (int steps = 0; steps < 4; steps++) {
+		for (size_t i = 0; i < cells; i++)
+			valid[i] = i / DIMS.phi_d % DIMS.theta_d < 24 && i % 7 != 3;
+		for (int c = 0; c < 3; c++)
+			for (size_t i = 0; i < cells; i++)
+				table[c][i] = truth_at(c, i);
+		assert_int_equal(spectral_fill(DIMS, valid, table, NULL), BP_OK);
+		assert_int_equal(spectral_project(spectrum, DIMS, valid, base, 1500, steps, table, NULL), BP_OK);
+		rest[steps] = rest_of(spectrum, table, valid, base, 600);
+	}
+	assert_true(rest[1] < 0.9 * rest[0]);
+	assert_true(rest[2] < rest[1] && rest[3] < rest[2]);
+	spectrum_free(spectrum);
+	free(valid);
+	free(block);
+}
+
+static void a_table_without_a_hole_is_left_alone(void **unused)
+{
+	const size_t cells = lattice_cells(DIMS);
+	float *block = malloc(3 * cells * sizeof *block), *const table[3] = {block, block + cells, block + 2 * cells};
+	const float base[3] = {0, 0, 0};
+	uint8_t *valid = malloc(cells);
+	struct spectrum *spectrum = NULL;
+	(void)unused;
+
+	assert_int_equal(spectrum_create(DIMS, &spectrum, NULL), BP_OK);
+	memset(valid, 1, cells);
+	for (int c = 0; c < 3; c++)
+		for (size_t i = 0; i < cells; i++)
+			table[c][i] = truth_at(c, i);
+	assert_int_equal(spectral_project(spectrum, DIMS, valid, base, 60400, 2, table, NULL), BP_OK);
+	for (int c = 0; c < 3; c++)
+		for (size_t i = 0; i < cells; i++)
+			assert_true(table[c][i] == truth_at(c, i));
+	spectrum_free(spectrum);
+	free(valid);
+	free(block);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_a_record_cannot_hold_becomes_less_and_valid_cells_stay),
+		cmocka_unit_test(a_table_without_a_hole_is_left_alone),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
