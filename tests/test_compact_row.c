@@ -11,7 +11,7 @@
 
 #include "model/table/compact_row.h"
 #include "model/math/fast_math.h"
-#include "model/kernels.h"
+#include "model/math/kernels.h"
 
 enum { PERIOD_MAX = 180, BLOCKS_MAX = 10, LINE = PERIOD_MAX + 2 * CELLS_MAX };
 
@@ -28,7 +28,7 @@ struct outcome {
 	float knots[2][3 * BLOCKS_MAX], scratch[4][LINE];
 };
 
-static void row_make(const struct kernels *kernels, uint32_t period, int channels, const float *const rgb[3], struct outcome *out)
+static void row_make(compact_row_fn *make, uint32_t period, int channels, const float *const rgb[3], struct outcome *out)
 {
 	const uint32_t blocks = (period + COMPACT_WIDTH_MAX - 1) / COMPACT_WIDTH_MAX, width = (period + blocks - 1) / blocks;
 	struct compact_rows_plan plan = {
@@ -39,7 +39,7 @@ static void row_make(const struct kernels *kernels, uint32_t period, int channel
 	memset(out, 0, sizeof *out);
 	plan.row = (struct compact_row){out->scratch[0], {out->scratch[1], out->scratch[2]}, out->scratch[3]};
 	compact_hats_make(width, (width + 1) / 2, &plan.hats);
-	kernels->compact_row(&plan, rgb, out->blocks, (float *const[]){out->knots[0], out->knots[1]});
+	make(&plan, rgb, out->blocks, (float *const[]){out->knots[0], out->knots[1]});
 	for (uint32_t k = 0; k < period; k++) {
 		const uint8_t *block = out->blocks + k / width * 2 * plan.block_bytes;
 		uint16_t head[2];
@@ -67,8 +67,8 @@ static void residuals_are_within_half_a_step_and_alike_on_every_processor(void *
 			}
 		for (size_t p = 0; p < sizeof PERIODS / sizeof *PERIODS; p++)
 			for (int channels = 1; channels <= 3; channels += 2) {
-				row_make(&kernels_plain, PERIODS[p], channels, rgb, &outcome[0]);
-				row_make(kernels_avx2_usable() ? &kernels_avx2 : &kernels_plain, PERIODS[p], channels, rgb, &outcome[1]);
+				row_make(compact_row_plain, PERIODS[p], channels, rgb, &outcome[0]);
+				row_make(kernels_avx2_usable() ? compact_row_avx2 : compact_row_plain, PERIODS[p], channels, rgb, &outcome[1]);
 				assert_memory_equal(&outcome[0], &outcome[1], sizeof outcome[0]);
 				for (uint32_t n = 0; n < 3 * BLOCKS_MAX; n++)
 					assert_true(outcome[0].knots[0][n] >= 0 && outcome[0].knots[1][n] >= 0 &&

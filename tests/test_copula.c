@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "model/paper/copula.h"
-#include "model/kernels.h"
+#include "model/paper/paper_kernels.h"
 
 static uint64_t state = 17;
 static double uniform(void)
@@ -243,7 +243,7 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 	}
 	const double *const planes[3] = {rgb[0], rgb[1], rgb[2]};
 	for (int k = 0; k < 2; k++)
-		sum[k] = (k ? kernels_avx2 : kernels_plain).density_row(planes, valid, N, 0.5, value[k], column[k], counts[k], &count[k]);
+		sum[k] = (k ? paper_kernels_avx2 : paper_kernels_plain).density_row(planes, valid, N, 0.5, value[k], column[k], counts[k], &count[k]);
 	assert_true(sum[0] == sum[1] && count[0] == count[1]);
 	assert_memory_equal(value[0], value[1], sizeof value[0]);
 	assert_memory_equal(column[0], column[1], sizeof column[0]);

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "model/spectral/cosines.h"
-#include "model/kernels.h"
+#include "model/spectral/spectral_kernels.h"
 #include "model/spectral/spectrum.h"
 
 static uint64_t state = 5;
@@ -80,7 +80,7 @@ static void plain_and_avx2_loops_give_the_same_bits(void **unused)
 	for (int i = 0; i < N; i++)
 		angle[i] = (float)uniform();
 	for (int n = 0; n < 2; n++) {
-		const struct kernels *kernels = n ? &kernels_avx2 : &kernels_plain;
+		const struct spectral_kernels *kernels = n ? &spectral_kernels_avx2 : &spectral_kernels_plain;
 		kernels->cosine_fold(in, N, out[n][0], out[n][0] + SIZE);
 		kernels->cosine_rotate(in, N, angle, out[n][1], out[n][1] + SIZE);
 		kernels->cosine_join(in, in + SIZE, N, out[n][2], 16);

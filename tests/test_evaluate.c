@@ -13,7 +13,7 @@
 #include "model/table/compact.h"
 #include "model/table/direction.h"
 #include "model/table/evaluate.h"
-#include "model/kernels.h"
+#include "model/math/kernels.h"
 #include "model/table/table.h"
 
 static uint64_t state = 11;

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "model/fidelity.h"
-#include "model/kernels.h"
+#include "model/fidelity_kernels.h"
 
 static uint64_t state = 5;
 static double uniform(void)
@@ -242,8 +242,8 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 		struct fidelity_sums a[2] = {0}, b[2] = {0};
 		const struct fidelity_table to_a[2] = {{p.table.rgb[1], 0.5, &a[0]}, {p.table.rgb[0], 0.25, &a[1]}};
 		const struct fidelity_table to_b[2] = {{p.table.rgb[1], 0.5, &b[0]}, {p.table.rgb[0], 0.25, &b[1]}};
-		kernels_plain.fidelity_slice(p.truth.rgb[1], p.truth.valid, cosine, n, to_a, 2);
-		kernels_avx2.fidelity_slice(p.truth.rgb[1], p.truth.valid, cosine, n, to_b, 2);
+		fidelity_kernels_plain.fidelity_slice(p.truth.rgb[1], p.truth.valid, cosine, n, to_a, 2);
+		fidelity_kernels_avx2.fidelity_slice(p.truth.rgb[1], p.truth.valid, cosine, n, to_b, 2);
 		assert_memory_equal(a, b, sizeof a);
 	}
 	pair_free(&p);

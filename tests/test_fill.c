@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "model/math/fill.h"
-#include "model/kernels.h"
+#include "model/math/fill_kernels.h"
 
 static uint64_t state = 11;
 static double uniform(void)
@@ -155,7 +155,7 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 		fine[0][i] = fine[1][i] = (float)uniform();
 	}
 	for (int k = 0; k < 2; k++) {
-		const struct kernels *kernels = k ? &kernels_avx2 : &kernels_plain;
+		const struct fill_kernels *kernels = k ? &fill_kernels_avx2 : &fill_kernels_plain;
 		struct fill_level a = {R, C, fine[k], valid}, b = {R2, C2, coarse[k], up[k]};
 		missing[k] = kernels->fill_halve(&a, &b);
 		kernels->fill_interpolate(&b, &a, 0, 1, scratch);

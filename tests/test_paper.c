@@ -12,7 +12,7 @@
 
 #include "model/fidelity.h"
 #include "model/paper/field.h"
-#include "model/kernels.h"
+#include "model/math/kernels.h"
 #include "model/model.h"
 #include "model/paper/paper.h"
 

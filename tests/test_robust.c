@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "model/kernels.h"
+#include "model/robust/robust_kernels.h"
 #include "model/robust/robust.h"
 #include "robust_oracle.h"
 
@@ -422,11 +422,11 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 		const struct robust_line line = {1.5, 2.9, 1.6, n % 2 ? 0 : 1e-17};
 		struct robust_sums p, q;
 		size_t below_a, below_b;
-		kernels_plain.robust_sums(&sample, &line, 0.7, &p);
-		kernels_avx2.robust_sums(&sample, &line, 0.7, &q);
+		robust_kernels_plain.robust_sums(&sample, &line, 0.7, &p);
+		robust_kernels_avx2.robust_sums(&sample, &line, 0.7, &q);
 		assert_memory_equal(&p, &q, sizeof p);
-		size_t count_a = kernels_plain.robust_scale(&sample, &line, 0.1, 0.2, a, &below_a);
-		size_t count_b = kernels_avx2.robust_scale(&sample, &line, 0.1, 0.2, b, &below_b);
+		size_t count_a = robust_kernels_plain.robust_scale(&sample, &line, 0.1, 0.2, a, &below_a);
+		size_t count_b = robust_kernels_avx2.robust_scale(&sample, &line, 0.1, 0.2, b, &below_b);
 		assert_true(count_a == count_b && below_a == below_b);
 		assert_memory_equal(a, b, count_a * sizeof *a);
 	}

@@ -71,7 +71,7 @@ static void sums_within_reach_are_those_of_the_plain_pass(void **unused)
 		struct robust_line line = {LINE.centre_x, LINE.centre_y + a * reach.centre_y, LINE.slope + b * reach.slope, 0};
 		struct robust_sums plain, fast;
 		assert_true(robust_anchor_reaches(&anchor, &line));
-		kernels_get()->robust_sums(&SAMPLE, &line, 1 / limit, &plain);
+		robust_kernels_get()->robust_sums(&SAMPLE, &line, 1 / limit, &plain);
 		robust_anchor_sums(&anchor, &line, limit, &fast);
 		assert_int_equal(fast.rejected, plain.rejected);
 		assert_close(fast.root, plain.root, plain.root);
@@ -102,8 +102,8 @@ static void the_median_is_found_among_the_near_ones(void **unused)
 		                                 LINE.slope + (n / 3 - 1) * reach.slope, 0};
 		for (int m = 0; m < 2; m++) {
 			const double at = m ? reach.median_low : reach.median_high;
-			kernels_get()->robust_scale(&SAMPLE, &line, at, at, inside, &less);
-			kernels_get()->robust_scale(&near, &line, at, at, inside, &less_near);
+			robust_kernels_get()->robust_scale(&SAMPLE, &line, at, at, inside, &less);
+			robust_kernels_get()->robust_scale(&near, &line, at, at, inside, &less_near);
 			assert_int_equal(anchor.sums.below + less_near, less);
 		}
 	}
@@ -156,8 +156,8 @@ static void both_tables_of_kernels_give_the_same_bits(void **unused)
 	assert_int_equal(robust_anchor_alloc(N + 256, &b, NULL), BP_OK);
 	a.sums = (struct anchor_sums){.near = &a.near, .edge = &a.edge};
 	b.sums = (struct anchor_sums){.near = &b.near, .edge = &b.edge};
-	assert_true(kernels_plain.robust_anchor(&SAMPLE, &LINE, &reach, &a.sums));
-	assert_true(kernels_avx2.robust_anchor(&SAMPLE, &LINE, &reach, &b.sums));
+	assert_true(robust_kernels_plain.robust_anchor(&SAMPLE, &LINE, &reach, &a.sums));
+	assert_true(robust_kernels_avx2.robust_anchor(&SAMPLE, &LINE, &reach, &b.sums));
 	assert_memory_equal(a.sums.moment, b.sums.moment, sizeof a.sums.moment);
 	assert_int_equal(a.sums.below, b.sums.below);
 	assert_int_equal(a.sums.outside, b.sums.outside);

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "model/kernels.h"
+#include "model/spectral/spectral_kernels.h"
 
 enum { N = 203 };
 
@@ -27,9 +27,9 @@ static void random_floats(float *x, size_t n)
 }
 
 /* Both tables, or the plain one twice. */
-static const struct kernels *table(int n)
+static const struct spectral_kernels *table(int n)
 {
-	return n && kernels_avx2_usable() ? &kernels_avx2 : &kernels_plain;
+	return n && kernels_avx2_usable() ? &spectral_kernels_avx2 : &spectral_kernels_plain;
 }
 
 static void logarithms_of_valid_cells_and_their_sum(void **unused)
@@ -57,7 +57,7 @@ static void logarithms_of_valid_cells_and_their_sum(void **unused)
 	assert_true(sum[0] == sum[1]);
 	assert_memory_equal(out[0], out[1], sizeof out[0]);
 	memset(valid, 0, sizeof valid);
-	assert_true(kernels_get()->spectral_largest(b, valid, N) == 0);
+	assert_true(spectral_kernels_get()->spectral_largest(b, valid, N) == 0);
 }
 
 static void moments_weigh_large_coefficients_less(void **unused)

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "model/kernels.h"
+#include "model/spectral/spectral_kernels.h"
 #include "model/spectral/spectrum.h"
 #include "random_tables.h"
 
@@ -104,11 +104,11 @@ static void plain_and_avx2_loops_give_the_same_bits(void **unused)
 		x[i] = y[i] = (float)(uniform() - 0.5);
 	for (int i = 0; i < WIDTH * COLUMNS; i++)
 		matrix[i] = (float)(uniform() - 0.5);
-	kernels_plain.cosine_product(x, WIDTH, N, WIDTH, matrix, COLUMNS, p, COLUMNS);
-	kernels_avx2.cosine_product(y, WIDTH, N, WIDTH, matrix, COLUMNS, q, COLUMNS);
+	spectral_kernels_plain.cosine_product(x, WIDTH, N, WIDTH, matrix, COLUMNS, p, COLUMNS);
+	spectral_kernels_avx2.cosine_product(y, WIDTH, N, WIDTH, matrix, COLUMNS, q, COLUMNS);
 	assert_memory_equal(p, q, sizeof p);
-	kernels_plain.cdf97_forward(x, N, WIDTH, WIDTH, scratch);
-	kernels_avx2.cdf97_forward(y, N, WIDTH, WIDTH, scratch);
+	spectral_kernels_plain.cdf97_forward(x, N, WIDTH, WIDTH, scratch);
+	spectral_kernels_avx2.cdf97_forward(y, N, WIDTH, WIDTH, scratch);
 	assert_memory_equal(x, y, sizeof x);
 }
 

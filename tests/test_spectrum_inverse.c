@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "model/kernels.h"
+#include "model/spectral/spectral_kernels.h"
 #include "model/spectral/spectrum_inverse.h"
 #include "random_tables.h"
 
@@ -181,8 +181,8 @@ static void half_a_plane_is_every_second_cell_of_the_whole(void **unused)
 		float *whole = aligned_alloc(64, bytes), *half = aligned_alloc(64, bytes);
 		for (size_t i = 0; i < bytes / sizeof(float); i++)
 			half[i] = whole[i] = (float)(uniform() - 0.5);
-		kernels_get()->cdf97_plane(whole, rows, columns, levels, 0);
-		kernels_get()->cdf97_plane(half, rows, columns, levels, 1);
+		spectral_kernels_get()->cdf97_plane(whole, rows, columns, levels, 0);
+		spectral_kernels_get()->cdf97_plane(half, rows, columns, levels, 1);
 		for (uint32_t i = 0; i < rows; i += 2)
 			for (uint32_t j = 0; j < columns; j += 2)
 				assert_memory_equal(whole + (i * columns + j) * SPECTRUM_BLOCK, half + (i * columns + j) * SPECTRUM_BLOCK, 64);
@@ -206,12 +206,12 @@ static void plain_and_avx2_loops_give_the_same_bits(void **unused)
 		terms[i] = (struct spectrum_term){(uint32_t)(uniform() * ROWS * COLUMNS), (float)(uniform() - 0.5)};
 	for (int i = 0; i < SPECTRUM_BLOCK; i++)
 		cosine[i] = (float)(uniform() - 0.5);
-	kernels_plain.spectrum_spread(terms, TERMS, cosine, x);
-	kernels_avx2.spectrum_spread(terms, TERMS, cosine, y);
+	spectral_kernels_plain.spectrum_spread(terms, TERMS, cosine, x);
+	spectral_kernels_avx2.spectrum_spread(terms, TERMS, cosine, y);
 	assert_memory_equal(x, y, sizeof x);
 	for (int half = 0; half < 2; half++) {
-		kernels_plain.cdf97_plane(x, ROWS, COLUMNS, 2, half);
-		kernels_avx2.cdf97_plane(y, ROWS, COLUMNS, 2, half);
+		spectral_kernels_plain.cdf97_plane(x, ROWS, COLUMNS, 2, half);
+		spectral_kernels_avx2.cdf97_plane(y, ROWS, COLUMNS, 2, half);
 		assert_memory_equal(x, y, sizeof x);
 	}
 }

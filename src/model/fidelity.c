@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "error.h"
-#include "kernels.h"
+#include "fidelity_kernels.h"
 
 /* Adds slice i of all tables to their totals. */
 static void slice_add(const struct lattice *truth, const struct expansion *tables, uint32_t count, uint32_t i, const float *cosine,
@@ -20,7 +20,7 @@ static void slice_add(const struct lattice *truth, const struct expansion *table
 	for (int c = 0; c < 3; c++) {
 		for (uint32_t t = 0; t < count; t++)
 			table[t] = (struct fidelity_table){tables[t].rgb[c] + at, tables[t].unit, &sums[t]};
-		kernels_get()->fidelity_slice(truth->rgb[c] + at, truth->valid + at, cosine, slice, table, count);
+		fidelity_kernels_get()->fidelity_slice(truth->rgb[c] + at, truth->valid + at, cosine, slice, table, count);
 	}
 	for (uint32_t t = 0; t < count; t++) {
 		total[t].log_squares += sums[t].log_squares;

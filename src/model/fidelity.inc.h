@@ -1,4 +1,6 @@
-/* fidelity.inc.h: the sums of fidelity.h. See kernels.h. */
+/* fidelity.inc.h: the sums of fidelity.h. See fidelity_kernels.h. */
+#include <stdbool.h>
+
 #include "model/math/fast_math.h"
 
 enum { FIDELITY_BLOCK = 64 };

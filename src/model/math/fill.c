@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "error.h"
-#include "model/kernels.h"
+#include "fill_kernels.h"
 
 enum { LEVELS_MAX = 24, SWEEPS = 4 };
 
@@ -63,7 +63,7 @@ void fill_free(struct fill *fill)
 
 void fill_plane(struct fill *fill, float *plane, const uint8_t *valid, float when_empty)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct fill_kernels *kernels = fill_kernels_get();
 	const size_t cells = (size_t)fill->level[0].rows * fill->level[0].columns;
 	size_t count = 0;
 	unsigned top = 0;

@@ -1,4 +1,4 @@
-/* density.inc.h: one row of the achromatic table. See kernels.h. */
+/* density.inc.h: one row of the achromatic table. See paper_kernels.h. */
 
 static double KERNEL(density_row)(const double *const rgb[3], const uint8_t *valid, size_t n, double factor, double *value,
                                   double *column_sum, uint32_t *column_count, uint32_t *count)

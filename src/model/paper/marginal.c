@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "error.h"
-#include "model/kernels.h"
+#include "paper_kernels.h"
 
 static bp_status means_alloc(struct means *means, size_t n, bp_error *error)
 {
@@ -35,7 +35,7 @@ void density_free(struct density *density)
 /* Sums of factor (r + g + b) into all means, in a fixed order: rows, then slices. Returns the sum over the lattice. */
 static double sums_gather(const struct lattice *lattice, double factor, struct density *out)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct paper_kernels *kernels = paper_kernels_get();
 	const struct lattice_dims d = lattice->dims;
 	double total = 0;
 

@@ -4,7 +4,7 @@
 
 #include "error.h"
 #include "field.h"
-#include "model/kernels.h"
+#include "paper_kernels.h"
 #include "paper.h"
 
 /* Everything that a slice needs, expanded once. */
@@ -65,7 +65,7 @@ static bp_status slices_begin(const struct paper_model *paper, struct lattice_di
 /* Slice i of f_h f_d f_phi c_hd c_hphi c_dphi|h; slices must be asked for in ascending order from 0. */
 static void slice_expand(struct slices *s, uint32_t i, float *out)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct paper_kernels *kernels = paper_kernels_get();
 	const struct paper_model *paper = s->paper;
 	const struct lattice_dims d = s->dims;
 	const float h = paper->marginal[0][i], *hd = s->hd + (size_t)i * d.theta_d, *hphi = s->hphi + (size_t)i * d.phi_d;
@@ -101,7 +101,7 @@ bp_status paper_achromatic(const struct paper_model *paper, struct lattice_dims 
 
 bp_status paper_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct paper_kernels *kernels = paper_kernels_get();
 	const struct paper_model *paper = model->paper;
 	const struct lattice_dims d = model->dims;
 	const size_t cells = (size_t)d.theta_d * d.phi_d;

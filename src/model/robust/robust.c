@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "error.h"
-#include "model/kernels.h"
+#include "robust_kernels.h"
 #include "robust_iterate.h"
 #include "robust_walk.h"
 
@@ -74,7 +74,7 @@ static struct power power_of(int e)
 /* Mean, Sxx and leverages of the scaled x. */
 static void design_prepare(struct design *design)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct robust_kernels *kernels = robust_kernels_get();
 	const double *x = design->x, n = (double)design->n;
 	const struct robust_sample sample = {x, x, design->excess, design->n};
 	struct robust_line line = {x[0], x[0], 0, 0};

@@ -45,7 +45,7 @@ bool robust_anchor_place(struct robust_anchor *anchor, const struct robust_sampl
 	anchor->reach = *reach;
 	anchor->sums.near = &anchor->near;
 	anchor->sums.edge = &anchor->edge;
-	anchor->placed = kernels_get()->robust_anchor(sample, line, reach, &anchor->sums);
+	anchor->placed = robust_kernels_get()->robust_anchor(sample, line, reach, &anchor->sums);
 	return anchor->placed;
 }
 
@@ -82,7 +82,7 @@ void robust_anchor_sums(const struct robust_anchor *anchor, const struct robust_
 		int a, e; /* of w t^a r^e */
 	} wanted[] = {{&out->w, 0, 0}, {&out->wx, 1, 0}, {&out->wxx, 2, 0}, {&out->wr, 0, 1}, {&out->wxr, 1, 1}};
 
-	kernels_get()->robust_sums(&edge, line, 1 / limit, out);
+	robust_kernels_get()->robust_sums(&edge, line, 1 / limit, out);
 	out->rejected += inside->outside;
 	out->root += inside_sum(inside, 0, 0, 0, dc, db) - k * inside_sum(inside, 1, 0, 2, dc, db);
 	for (size_t n = 0; n < sizeof wanted / sizeof *wanted; n++) {

@@ -18,7 +18,7 @@
 #ifndef MODEL_ROBUST_ROBUST_ANCHOR_H
 #define MODEL_ROBUST_ROBUST_ANCHOR_H
 
-#include "model/kernels.h"
+#include "robust_kernels.h"
 #include "brdfpack.h"
 
 struct robust_anchor {

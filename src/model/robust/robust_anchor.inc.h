@@ -1,4 +1,5 @@
-/* robust_anchor.inc.h: the one pass of robust_anchor.h over all observations. See kernels.h. */
+/* robust_anchor.inc.h: the one pass of robust_anchor.h over all observations. See robust_kernels.h. */
+#include <string.h>
 
 enum { ANCHOR_BLOCK = 256, ANCHOR_GROUP = 16 };
 

@@ -20,7 +20,7 @@ static struct robust_sample picks_copy(struct design *design, const double *y)
 void robust_iterate(struct design *design, const double *y, struct robust_fit *out)
 {
 	struct walk walk = {
-		.kernels = kernels_get(),
+		.kernels = robust_kernels_get(),
 		.sample = {design->x, y, design->excess, design->n},
 		.picks = picks_copy(design, y),
 		.inside = design->inside,

@@ -1,4 +1,4 @@
-/* robust.inc.h: the two passes of one iteration of robust.h. See kernels.h. */
+/* robust_sums.inc.h: the two passes of one iteration of robust.h. See robust_kernels.h. */
 
 enum { ROBUST_BLOCK = 512, ROBUST_GROUP = 16 };
 

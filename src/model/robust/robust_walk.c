@@ -46,7 +46,7 @@ static void guess_bracket(const struct robust_sample *picks, const struct robust
 static double residual_median(struct walk *walk, const struct robust_sample *sample, const struct robust_line *line, size_t below,
                               double widest)
 {
-	const struct kernels *kernels = walk->kernels;
+	const struct robust_kernels *kernels = walk->kernels;
 	struct expectation *next = &walk->next;
 	const size_t n = walk->sample.n, k = 1 + (n - 2) / 2 - below, k2 = 1 + (n - 1) / 2 - below;
 	double low, high, median, *inside = walk->inside;
@@ -131,7 +131,7 @@ static double line_step(const struct robust_sums *s, struct robust_line *line)
 /* Ordinary least squares, weights 1: first for the mean of y, then about it. */
 void walk_start(struct walk *walk)
 {
-	const struct kernels *kernels = walk->kernels;
+	const struct robust_kernels *kernels = walk->kernels;
 	const double *y = walk->sample.y, n = (double)walk->sample.n;
 	double syy = 0, rest = 0;
 

@@ -23,7 +23,7 @@ struct expectation {
 
 /* One regression under way. */
 struct walk {
-	const struct kernels *kernels;
+	const struct robust_kernels *kernels;
 	struct robust_sample sample, picks;
 	double *inside;           /* n + 1: values gathered around the median */
 	double sigma_least;

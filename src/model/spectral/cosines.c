@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "error.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 #include "spectrum.h"
 
 enum { WIDTH = 16, SMALL = 8 }; /* rows at once; from here on a product is as good */
@@ -125,7 +125,7 @@ void cosines_free(struct cosines *cosines)
 /* x[n][WIDTH] to out[harmonic], `step` rows apart. */
 static void node_run(const struct node *node, const float *x, float *out, size_t step, float *scratch)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const size_t n = node->n, half = n / 2;
 	float *first = scratch, *second = scratch + (n - half) * WIDTH, *left = scratch + n * WIDTH;
 
@@ -151,7 +151,7 @@ static void node_run(const struct node *node, const float *x, float *out, size_t
 
 static void strip_forward(struct cosines *c, float *rows, float base)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const size_t n = c->n, even = (n + 1) / 2;
 
 	kernels->cosine_gather(rows, n, base, c->in);

@@ -1,4 +1,4 @@
-/* cosines.inc.h: the steps of cosines.h, on rows of 16 values. See kernels.h. */
+/* cosines.inc.h: the steps of cosines.h, on rows of 16 values. See spectral_kernels.h. */
 #define ROW(p, k) ((p) + (size_t)(k) * 16)
 
 static void KERNEL(cosine_fold)(const float *x, size_t n, float *sum, float *difference)

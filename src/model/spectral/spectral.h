@@ -59,6 +59,11 @@ float spectral_most(double unit);
 bp_status spectral_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
 /* Every second corner along each axis (extents even); *out has half the model's extents. Decoded models only. */
 bp_status spectral_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+/*
+ * The same, or with `half` the half, as 16-bit floats of table.h's expanded form in units of SPECTRAL_CODES_UNIT times the model's unit:
+ * `channels` of them for every cell, 3 or 1, the channels' mean; rows of phi_d begin `stride` codes apart. No table of floats is made.
+ */
+bp_status spectral_expand_codes(const struct model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error);
 void spectral_free(struct spectral_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */

@@ -15,7 +15,7 @@
 #include "error.h"
 #include "spectral.h"
 #include "model/math/fast_math.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 #include "model/math/select.h"
 #include "spectrum.h"
 
@@ -149,7 +149,7 @@ static void squares_fill(struct lattice_dims d, const float *c, struct rectangle
 
 static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, const struct noise *noise, struct squares *squares)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const uint32_t columns = d.theta_d / 2, p = d.phi_d;
 
 	squares_fill(d, c, band, 0, squares->row[0]);

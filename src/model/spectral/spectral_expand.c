@@ -7,7 +7,7 @@
 #include "error.h"
 #include "memory.h"
 #include "spectral_terms.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 
 float spectral_most(double unit)
 {
@@ -54,8 +54,8 @@ static void values_take(void *user, const struct spectral_block *block)
 	const size_t p = target->out->dims.phi_d, at = block->row * p + block->column;
 	float *const rgb[3] = {target->out->rgb[0] + at, target->out->rgb[1] + at, target->out->rgb[2] + at};
 
-	kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
-	                              spectral_most(m->unit), rgb, p);
+	spectral_kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
+	                                        spectral_most(m->unit), rgb, p);
 }
 
 bp_status spectral_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
@@ -63,6 +63,29 @@ bp_status spectral_expand(const struct model *model, uint32_t layers, struct exp
 	struct values_target target = {model->spectral, out};
 	out->unit = model->spectral->unit;
 	return spectral_expand_blocks(model, layers, values_take, &target, error);
+}
+
+struct codes_target {
+	const struct spectral_model *model;
+	int channels;
+	uint16_t *out;
+	size_t stride;
+};
+
+static void codes_take(void *user, const struct spectral_block *block)
+{
+	const struct codes_target *target = user;
+	const struct spectral_model *m = target->model;
+	uint16_t *out = target->out + block->row * target->stride + (size_t)block->column * (size_t)target->channels;
+
+	spectral_kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
+	                                       spectral_most(m->unit), target->channels, out, target->stride);
+}
+
+bp_status spectral_expand_codes(const struct model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error)
+{
+	struct codes_target target = {model->spectral, channels, out, stride};
+	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, codes_take, &target, error);
 }
 
 bp_status spectral_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)

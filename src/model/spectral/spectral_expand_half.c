@@ -12,7 +12,7 @@
 #include "error.h"
 #include "memory.h"
 #include "spectral_terms.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 
 enum { COLUMNS_STEP = 16, ROWS_STEP = 16 }; /* cosine_product works on so many columns at once; rows whose fields stay in the nearest cache */
 
@@ -37,7 +37,7 @@ static void harmonics_invert(const struct spectrum_inverse *inverse, const struc
 		for (uint32_t i = start[m]; i < start[m + 1]; i++)
 			plane[(size_t)terms->term[i].place * SPECTRUM_BLOCK + q] = terms->term[i].value;
 	}
-	kernels_get()->cdf97_plane(plane, d.theta_h, d.theta_d, inverse->levels, 1);
+	spectral_kernels_get()->cdf97_plane(plane, d.theta_h, d.theta_d, inverse->levels, 1);
 	for (uint32_t i = 0; i < d.theta_h / 2; i++)
 		for (uint32_t j = 0; j < d.theta_d / 2; j++)
 			memcpy(n->value + ((size_t)i * (d.theta_d / 2) + j) * n->stride + first,
@@ -90,7 +90,7 @@ bp_status spectral_expand_half_blocks(const struct model *model, uint32_t layers
 			.row = r, .rows = rows - r < ROWS_STEP ? rows - r : ROWS_STEP, .width = h.phi_d, .stride = columns,
 		};
 		for (size_t f = 0; f < 3; f++)
-			kernels_get()->cosine_product(narrow[f].value + r * narrow[f].stride, narrow[f].stride, block.rows, narrow[f].count, narrow[f].matrix,
+			spectral_kernels_get()->cosine_product(narrow[f].value + r * narrow[f].stride, narrow[f].stride, block.rows, narrow[f].count, narrow[f].matrix,
 			                              columns, fields + f * piece, columns);
 		take(user, &block);
 	}

@@ -11,7 +11,7 @@
 #include "error.h"
 #include "spectral.h"
 #include "model/math/fill.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 
 enum {
 	SWEEPS = 16, /* 20 take a quarter more time and save 0.3 % of the error; 12 cost 1 % */
@@ -87,7 +87,7 @@ static bp_status runs_make(struct lattice_dims d, const uint8_t *valid, uint8_t 
 /* One sweep over the runs, forwards or backwards; mirrored at the table's ends. */
 static void sweep(const struct runs *runs, int backwards, float *table)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 
 	for (uint32_t n = 0; n < runs->count; n++) {
 		const struct run *run = &runs->run[backwards ? runs->count - 1 - n : n];

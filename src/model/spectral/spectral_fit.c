@@ -18,7 +18,7 @@
 #include "spectral.h"
 #include "spectral_survey.h"
 #include "model/math/fast_math.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 #include "spectrum.h"
 
 void spectral_free(struct spectral_model *model)
@@ -68,7 +68,7 @@ static void eigenvectors(double a[3][3], double v[3][3])
  */
 static void rotation_find(float *const channel[3], size_t rows, size_t lanes, float rotation[3][3])
 {
-	const struct kernels *kernels = kernels_get();
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 	double moment[6] = {0}, v[3][3];
 	int order[3] = {0, 1, 2};
 
@@ -101,7 +101,7 @@ static bp_status logs_make(const struct lattice *lattice, const int order[3], st
 
 	stage_enter(STAGE_CLEAN);
 	for (int k = 0; k < 3; k++) {
-		const double sum = kernels_get()->spectral_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit, fitted->coefficient[k]);
+		const double sum = spectral_kernels_get()->spectral_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit, fitted->coefficient[k]);
 		fitted->base[order[k]] = (float)(sum / (double)lattice->valid_count);
 	}
 	return spectral_fill(lattice->dims, lattice->valid, fitted->coefficient, error);
@@ -125,7 +125,7 @@ static bp_status fields_make(struct lattice_dims d, const int order[3], const fl
 
 	for (size_t r = 0; r < rows; r++) {
 		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d, fitted->coefficient[2] + r * d.phi_d};
-		kernels_get()->spectral_rotate(x, d.phi_d, rotation);
+		spectral_kernels_get()->spectral_rotate(x, d.phi_d, rotation);
 	}
 	for (int f = 0; f < 3; f++)
 		for (int k = 0; k < 3; k++)

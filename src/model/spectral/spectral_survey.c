@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "spectral.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 #include "model/robust/robust.h"
 #include "model/math/select.h"
 
@@ -86,7 +86,7 @@ static double largest_value(const struct lattice *lattice)
 	const size_t cells = lattice_cells(lattice->dims);
 	double largest = 0;
 	for (int c = 0; c < 3; c++)
-		largest = fmax(largest, kernels_get()->spectral_largest(lattice->rgb[c], lattice->valid, cells));
+		largest = fmax(largest, spectral_kernels_get()->spectral_largest(lattice->rgb[c], lattice->valid, cells));
 	return largest;
 }
 

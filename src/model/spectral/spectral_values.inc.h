@@ -1,4 +1,4 @@
-/* spectral_values.inc.h: the loops of the spectral profile's fit and expansion. See kernels.h and spectral.h. */
+/* spectral_values.inc.h: the loops of the spectral profile's fit and expansion. See spectral_kernels.h and spectral.h. */
 #include "model/math/fast_math.h"
 
 /* Eight double lanes of n floats, joined in one order. */

@@ -4,7 +4,7 @@
 
 #include "error.h"
 #include "cosines.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 
 struct spectrum {
 	struct lattice_dims dims;
@@ -66,7 +66,7 @@ void spectrum_free(struct spectrum *t)
 
 void spectrum_forward(struct spectrum *t, float *table, float base)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const size_t p = t->dims.phi_d, slice = t->dims.theta_d * p;
 	size_t rows = t->dims.theta_h, columns = t->dims.theta_d;
 

@@ -1,4 +1,4 @@
-/* spectrum.inc.h: products with cosine tables, and lifting steps. See kernels.h and spectrum.h. */
+/* spectrum.inc.h: products with cosine tables, and lifting steps. See spectral_kernels.h and spectrum.h. */
 #include <string.h>
 
 #include "spectrum.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "error.h"
-#include "model/kernels.h"
+#include "spectral_kernels.h"
 
 /* One axis of `here` coefficients of one step, coarse ones first: where the i-th belongs among them, and its gain in that step. */
 static uint32_t step_place(uint32_t i, uint32_t here, float *gain)
@@ -92,7 +92,7 @@ void spectrum_inverse_cosines(const struct spectrum_inverse *t, uint32_t m, uint
 void spectrum_inverse_block(const struct spectrum_inverse *t, const struct spectrum_term *terms, const uint32_t *start, uint32_t first,
                             float *plane)
 {
-	const struct kernels *kernels = kernels_get();
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const struct lattice_dims d = t->dims;
 	float cosine[SPECTRUM_BLOCK];
 

@@ -7,7 +7,7 @@
 #include "error.h"
 #include "memory.h"
 #include "compact_row.h"
-#include "model/kernels.h"
+#include "model/math/kernels.h"
 
 /* Shares of cells well below this count little: 1e-3/sr, as a share of the table's largest value, within reason. */
 static float dark_of(double largest)
@@ -130,12 +130,13 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 		.dark = dark_of(largest * e->unit),
 		.row = {scratch, {scratch + line, scratch + 2 * line}, scratch + 3 * line},
 	};
+	compact_row_fn *const row_make = kernels_avx2_usable() ? compact_row_avx2 : compact_row_plain;
 	float low[2] = {1, 1}, high[2] = {0, 0};
 	compact_hats_make(t->width, t->half, &plan.hats);
 	for (size_t r = 0; r < rows; r++) {
 		const float *const rgb[3] = {e->rgb[0] + r * period, e->rgb[1] + r * period, e->rgb[2] + r * period};
 		float *const codes[2] = {knots[0] + r * kept, knots[1] + r * kept};
-		kernels_get()->compact_row(&plan, rgb, row_at(t, r / e->dims.theta_d, r % e->dims.theta_d), codes);
+		row_make(&plan, rgb, row_at(t, r / e->dims.theta_d, r % e->dims.theta_d), codes);
 		for (int c = 0; c < 2 && t->channels == 3; c++)
 			for (uint32_t n = 0; n < kept; n++) {
 				low[c] = codes[c][n] < low[c] ? codes[c][n] : low[c];

@@ -39,6 +39,13 @@ struct compact_rows_plan {
 	struct compact_row row; /* scratch */
 };
 
+/*
+ * A row of values in the compact form, its first block at `block`, but for the shares' codes: three of R and three of B for every block
+ * go to knots, as they are. For any processor, and for those with AVX2 (math/kernels.h): the same bits.
+ */
+typedef void compact_row_fn(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block, float *const knots[2]);
+compact_row_fn compact_row_plain, compact_row_avx2;
+
 /* m: the five different elements of a system of hat functions; x: its right-hand side, then its solution. */
 static inline void compact_solve(const float m[5], float x[3])
 {

@@ -142,7 +142,7 @@ static void KERNEL(compact_roots)(const float *root, uint32_t count, uint8_t *bl
 }
 _Static_assert(CELLS_MAX == 20 && COMPACT_RESIDUALS + CELLS_MAX <= COMPACT_BLOCK_MONO, "a block has room for all that is written");
 
-static void KERNEL(compact_row)(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block, float *const knots[2])
+void KERNEL(compact_row)(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block, float *const knots[2])
 {
 	KERNEL(compact_prepare)(plan, rgb);
 	for (uint32_t b = 0; b < plan->blocks; b++, block += 2 * plan->block_bytes) {

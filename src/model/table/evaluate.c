@@ -5,8 +5,8 @@
 #include "error.h"
 #include "memory.h"
 #include "compact.h"
-#include "model/spectral/spectral_expand.h"
-#include "model/kernels.h"
+#include "model/spectral/spectral.h"
+#include "model/math/kernels.h"
 
 /* A table's unit: what is beyond a float's range is cut. */
 static float table_unit(double unit)
@@ -124,40 +124,24 @@ bp_status table_build(const struct expansion *expansion, enum table_form form, i
 
 /* ---- from a model ---- */
 
-struct codes_target {
-	const struct spectral_model *model;
-	struct table *table;
-};
-
-static void codes_take(void *user, const struct spectral_block *block)
-{
-	const struct codes_target *target = user;
-	const struct spectral_model *m = target->model;
-	const struct table *t = target->table;
-	uint16_t *out = (uint16_t *)(void *)t->store + block->row * t->row + (size_t)block->column * (size_t)t->channels;
-
-	kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
-	                             spectral_most(m->unit), t->channels, out, t->row);
-}
-
 /* Straight from the fields: no table of floats in between, which would be twice the size. */
 static bp_status codes_build(const struct model *model, uint32_t layers, struct lattice_dims dims, bool half, int channels, struct table **out,
                              bp_error *error)
 {
-	struct codes_target target = {model->spectral, NULL};
-	bp_status status = table_new(dims, TABLE_EXPANDED, channels, &target.table, error);
+	struct table *table = NULL;
+	bp_status status = table_new(dims, TABLE_EXPANDED, channels, &table, error);
 	if (status)
 		return status;
-	target.table->unit = (float)(target.model->unit * SPECTRAL_CODES_UNIT);
-	status = expanded_alloc(target.table, error);
+	table->unit = (float)(model->spectral->unit * SPECTRAL_CODES_UNIT);
+	status = expanded_alloc(table, error);
 	if (!status)
-		status = (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, codes_take, &target, error);
+		status = spectral_expand_codes(model, layers, half, channels, (uint16_t *)(void *)table->store, table->row, error);
 	if (status) {
-		table_free(target.table);
+		table_free(table);
 		return status;
 	}
-	expanded_close(target.table);
-	*out = target.table;
+	expanded_close(table);
+	*out = table;
 	return BP_OK;
 }
 

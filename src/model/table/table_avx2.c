@@ -3,3 +3,4 @@
 #include "expanded.inc.h"
 
 #include "compact.inc.h"
+#include "compact_row.inc.h"

@@ -1,4 +1,4 @@
-/* paper.inc.h: the rows of paper_expand.c. See kernels.h. */
+/* paper_rows.inc.h: the rows of paper_expand.c. See paper_kernels.h. */
 
 static void KERNEL(paper_row)(float row, const float *column, const float *dphi, size_t n, float *out)
 {

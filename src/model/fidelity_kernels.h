@@ -1,0 +1,40 @@
+/* fidelity_kernels.h: the sums of fidelity.h, compiled twice (math/kernels.h). */
+#ifndef MODEL_FIDELITY_KERNELS_H
+#define MODEL_FIDELITY_KERNELS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "model/math/kernels.h"
+
+struct fidelity_sums {
+	double log_squares;      /* of log2 ratios */
+	double cube_root_squares;
+	double largest_relative;
+};
+
+/* One channel of a decoded table, and where its sums go. */
+struct fidelity_table {
+	const float *e;
+	double unit;
+	struct fidelity_sums *sums;
+};
+
+struct fidelity_kernels {
+	/*
+	 * Adds the n cells of one channel of one theta_h slice to the sums of every table: b measured, unit * e decoded, in 1/sr;
+	 * cosine >= 0; cells with valid = 0 add nothing.
+	 */
+	void (*fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n, const struct fidelity_table *tables,
+	                       size_t count);
+};
+
+extern const struct fidelity_kernels fidelity_kernels_plain, fidelity_kernels_avx2;
+
+/* Those for this processor. */
+static inline const struct fidelity_kernels *fidelity_kernels_get(void)
+{
+	return kernels_avx2_usable() ? &fidelity_kernels_avx2 : &fidelity_kernels_plain;
+}
+
+#endif

@@ -1,0 +1,9 @@
+/* fidelity_kernels.inc.h: all loops of fidelity_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+#include "fidelity_kernels.h"
+#include "model/math/vector.h"
+
+#include "fidelity.inc.h"
+
+const struct fidelity_kernels KERNEL(fidelity_kernels) = {
+	.fidelity_slice = KERNEL(fidelity_slice),
+};

@@ -1,0 +1,33 @@
+/* fill_kernels.h: the steps of fill.h on one level of its pyramid, compiled twice (math/kernels.h). */
+#ifndef MODEL_MATH_FILL_KERNELS_H
+#define MODEL_MATH_FILL_KERNELS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "model/math/kernels.h"
+
+/* One level of the pyramid of fill.h. */
+struct fill_level {
+	uint32_t rows, columns;
+	float *value;
+	uint8_t *valid;
+};
+
+struct fill_kernels {
+	/* The steps of fill.h; scratch holds two rows and four cells. */
+	size_t (*fill_halve)(const struct fill_level *fine, const struct fill_level *coarse);
+	void (*fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows, int wrap_columns,
+	                         float *scratch);
+	void (*fill_smooth)(const struct fill_level *level, int wrap_rows, int wrap_columns, unsigned sweeps, float *scratch);
+};
+
+extern const struct fill_kernels fill_kernels_plain, fill_kernels_avx2;
+
+/* Those for this processor. */
+static inline const struct fill_kernels *fill_kernels_get(void)
+{
+	return kernels_avx2_usable() ? &fill_kernels_avx2 : &fill_kernels_plain;
+}
+
+#endif

@@ -1,0 +1,111 @@
+/* fill_steps.inc.h: the steps of fill.h on one level. See fill_kernels.h. */
+
+/* Coarse cells from fine ones; returns how many coarse cells have no valid child. */
+static size_t KERNEL(fill_halve)(const struct fill_level *fine, const struct fill_level *coarse)
+{
+	const size_t columns = fine->columns, half = columns / 2;
+	size_t missing = 0;
+
+	for (size_t r = 0; r < coarse->rows; r++) {
+		/* An odd last row or column is its own second child. */
+		const size_t second = 2 * r + 1 < fine->rows ? 2 * r + 1 : 2 * r;
+		const float *a = fine->value + 2 * r * columns, *b = fine->value + second * columns;
+		const uint8_t *va = fine->valid + 2 * r * columns, *vb = fine->valid + second * columns;
+		float *value = coarse->value + r * coarse->columns;
+		uint8_t *valid = coarse->valid + r * coarse->columns;
+		unsigned empty = 0;
+
+		for (size_t c = 0; c < half; c++) {
+			int p = va[2 * c] != 0, q = va[2 * c + 1] != 0, s = vb[2 * c] != 0, t = vb[2 * c + 1] != 0, n = p + q + s + t;
+			float sum = ((p ? a[2 * c] : 0) + (q ? a[2 * c + 1] : 0)) + ((s ? b[2 * c] : 0) + (t ? b[2 * c + 1] : 0));
+			value[c] = sum / (float)(n ? n : 1);
+			valid[c] = n != 0;
+			empty += n == 0;
+		}
+		if (columns % 2) {
+			int p = va[columns - 1] != 0, s = vb[columns - 1] != 0, n = p + s;
+			float sum = (p ? a[columns - 1] : 0) + (s ? b[columns - 1] : 0);
+			value[half] = sum / (float)(n ? n : 1);
+			valid[half] = n != 0;
+			empty += n == 0;
+		}
+		missing += empty;
+	}
+	return missing;
+}
+
+/*
+ * A row's neighbour on either side, `size` cells long: before the first and after the last. On an axis that
+ * does not wrap the border is its own neighbour.
+ */
+static inline size_t KERNEL(before)(size_t i, size_t size, int wrap)
+{
+	return i ? i - 1 : wrap ? size - 1 : 0;
+}
+static inline size_t KERNEL(after)(size_t i, size_t size, int wrap)
+{
+	return i + 1 < size ? i + 1 : wrap ? 0 : i;
+}
+
+/* Invalid fine cells from the coarse level: 3/4 of the parent and 1/4 of its nearer neighbour, along both axes. */
+static void KERNEL(fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows, int wrap_columns,
+                                     float *scratch)
+{
+	const size_t n = coarse->columns, columns = fine->columns;
+	float *blend = scratch + 1; /* a coarse row with one more cell on both sides */
+
+	for (size_t r = 0; r < fine->rows; r++) {
+		const size_t parent = r / 2;
+		const size_t other = r % 2 ? KERNEL(after)(parent, coarse->rows, wrap_rows) : KERNEL(before)(parent, coarse->rows, wrap_rows);
+		const float *a = coarse->value + parent * n, *b = coarse->value + other * n;
+		float *value = fine->value + r * columns;
+		const uint8_t *valid = fine->valid + r * columns;
+		unsigned all = 1;
+
+		for (size_t c = 0; c < columns; c++)
+			all &= valid[c] != 0;
+		if (all)
+			continue;
+		for (size_t c = 0; c < n; c++)
+			blend[c] = 0.75f * a[c] + 0.25f * b[c];
+		blend[-1] = blend[wrap_columns ? n - 1 : 0];
+		blend[n] = blend[wrap_columns ? 0 : n - 1];
+		for (size_t c = 0; c < columns / 2; c++) {
+			float left = 0.75f * blend[c] + 0.25f * blend[(ptrdiff_t)c - 1], right = 0.75f * blend[c] + 0.25f * blend[c + 1];
+			value[2 * c] = valid[2 * c] ? value[2 * c] : left;
+			value[2 * c + 1] = valid[2 * c + 1] ? value[2 * c + 1] : right;
+		}
+		if (columns % 2 && !valid[columns - 1])
+			value[columns - 1] = 0.75f * blend[n - 1] + 0.25f * blend[(ptrdiff_t)n - 2];
+	}
+}
+
+/* Sweeps down and up the rows: an invalid cell becomes the mean of its neighbours, of which the row just passed is new already. */
+static void KERNEL(fill_smooth)(const struct fill_level *level, int wrap_rows, int wrap_columns, unsigned sweeps, float *scratch)
+{
+	const size_t rows = level->rows, columns = level->columns;
+	float *copy = scratch + 1;
+
+	for (unsigned s = 0; s < sweeps; s++)
+		for (size_t q = 0; q < rows; q++) {
+			const size_t r = s % 2 ? rows - 1 - q : q;
+			const float *up = level->value + KERNEL(before)(r, rows, wrap_rows) * columns;
+			const float *down = level->value + KERNEL(after)(r, rows, wrap_rows) * columns;
+			float *value = level->value + r * columns;
+			const uint8_t *valid = level->valid + r * columns;
+			unsigned all = 1;
+
+			for (size_t c = 0; c < columns; c++)
+				all &= valid[c] != 0;
+			if (all)
+				continue;
+			for (size_t c = 0; c < columns; c++)
+				copy[c] = value[c];
+			copy[-1] = copy[wrap_columns ? columns - 1 : 0];
+			copy[columns] = copy[wrap_columns ? 0 : columns - 1];
+			for (size_t c = 0; c < columns; c++) {
+				float mean = 0.25f * ((copy[(ptrdiff_t)c - 1] + copy[c + 1]) + (up[c] + down[c]));
+				value[c] = valid[c] ? copy[c] : mean;
+			}
+		}
+}

@@ -1,0 +1,17 @@
+/*
+ * kernels.h: hot loops that are compiled twice and chosen once.
+ *
+ * The loops of a wing stand in its files NAME.inc.h as static functions KERNEL(name). WING_kernels.inc.h includes them all and
+ * ends in one table of function pointers; WING_kernels.c compiles that text for any processor, WING_kernels_avx2.c for AVX2.
+ * To add a loop: write KERNEL(loop) in an .inc.h, add a member to WING_kernels.h and an initialiser to WING_kernels.inc.h.
+ *
+ * Both tables give the same bits: no fused multiply-add, no reassociation by the compiler, and sums run over
+ * a fixed number of lanes (vector.h) whatever the machine's vectors are.
+ */
+#ifndef MODEL_MATH_KERNELS_H
+#define MODEL_MATH_KERNELS_H
+
+/* Whether this processor runs the tables compiled for AVX2. Cheap; thread-safe. */
+int kernels_avx2_usable(void);
+
+#endif

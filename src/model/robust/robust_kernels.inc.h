@@ -1,0 +1,12 @@
+/* robust_kernels.inc.h: all loops of robust_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+#include "robust_kernels.h"
+#include "model/math/vector.h"
+
+#include "robust_sums.inc.h"
+#include "robust_anchor.inc.h"
+
+const struct robust_kernels KERNEL(robust_kernels) = {
+	.robust_scale = KERNEL(robust_scale),
+	.robust_sums = KERNEL(robust_sums),
+	.robust_anchor = KERNEL(robust_anchor),
+};

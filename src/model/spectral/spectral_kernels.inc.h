@@ -1,0 +1,28 @@
+/* spectral_kernels.inc.h: all loops of spectral_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+#include "spectral_kernels.h"
+#include "model/math/vector.h"
+
+#include "spectrum.inc.h"
+#include "cosines.inc.h"
+#include "spectrum_inverse.inc.h"
+#include "spectral_values.inc.h"
+
+const struct spectral_kernels KERNEL(spectral_kernels) = {
+	.cosine_product = KERNEL(cosine_product),
+	.cosine_fold = KERNEL(cosine_fold),
+	.cosine_rotate = KERNEL(cosine_rotate),
+	.cosine_join = KERNEL(cosine_join),
+	.cosine_gather = KERNEL(cosine_gather),
+	.cosine_scatter = KERNEL(cosine_scatter),
+	.cdf97_forward = KERNEL(cdf97_forward),
+	.spectrum_spread = KERNEL(spectrum_spread),
+	.cdf97_plane = KERNEL(cdf97_plane),
+	.spectral_logs = KERNEL(spectral_logs),
+	.spectral_largest = KERNEL(spectral_largest),
+	.spectral_moments = KERNEL(spectral_moments),
+	.spectral_values = KERNEL(spectral_values),
+	.spectral_codes = KERNEL(spectral_codes),
+	.spectral_rotate = KERNEL(spectral_rotate),
+	.spectral_smooth = KERNEL(spectral_smooth),
+	.spectral_shrink = KERNEL(spectral_shrink),
+};

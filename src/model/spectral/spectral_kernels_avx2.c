@@ -1,0 +1,3 @@
+/* The same loops as spectral_kernels.c, compiled for AVX2 by the Makefile's rule for *_avx2.c. */
+#define KERNEL(name) name##_avx2
+#include "spectral_kernels.inc.h"
