@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "codec/bytes.h"
+#include "bytes.h"
 
 /*
  * What is written to the stream is added to *out, once it is flushed or closed; out->failed tells that memory ran out. *out stays

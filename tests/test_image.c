@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "render/image.h"
+#include "render/picture.h"
 
 static char folder[] = "/tmp/test_image.XXXXXX";
 

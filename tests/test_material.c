@@ -4,7 +4,7 @@
 #include <pthread.h>
 
 #include "merl/lattice.h"
-#include "model/table/evaluate.h"
+#include "model/table/table.h"
 
 static const struct lattice_dims DIMS = {12, 10, 24};
 enum { MATERIALS = 100 };

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "render/energy.h"
 #include "render/metrics.h"
 
 static const struct lattice_dims SMALL = {4, 4, 4};

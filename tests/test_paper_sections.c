@@ -46,6 +46,7 @@ static struct model *model_make(struct lattice_dims dims, uint32_t slices, uint3
 	model->profile = PROFILE_PAPER;
 	model->dims = dims;
 	model->paper = paper;
+	paper->dims = dims;
 	paper->scale = 0.123456789;
 	for (int axis = 0; axis < 3; axis++) {
 		paper->marginal[axis] = malloc(extents[axis] * sizeof(float));

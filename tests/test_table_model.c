@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "codec/record.h"
-#include "model/table/evaluate.h"
+#include "model/table/table.h"
 #include "packed_fixture.h"
 
 static void directions(int n, float wi[3], float wo[3])

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "error.h"
+#include "tool/cores.h"
 #include "tool/workers.h"
 
 enum { JOBS = 40 };
@@ -211,7 +212,7 @@ static void a_name_that_is_too_long_is_an_error_of_that_job(void **state)
 static void at_least_one_core_is_usable(void **state)
 {
 	(void)state;
-	assert_in_range(workers_usable_cores(), 1, WORKERS_MAX);
+	assert_in_range(cores_usable(), 1, WORKERS_MAX);
 }
 
 int main(void)

@@ -62,6 +62,7 @@ FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 	model->dims = shape.dims;
 	model->horizon_limit = -0.0625;
 	model->paper = paper;
+	paper->dims = shape.dims;
 	paper->scale = shape.scale;
 	for (int c = 0; c < 3; c++)
 		model->colour[c] = (struct colour_fit){ shape.scale * (0.125 - 0.0625 * c), 1.25 - 0.25 * c, 9u + (uint32_t)c, c != 1, 0.03125 * c };

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "codec/bytes.h"
+#include "bytes.h"
 #include "error.h"
 
 enum { AT_MAJOR = 8, AT_FLAGS = 12, AT_FILE_BYTES = 16, AT_COUNT = 24, AT_INDEX = 32, AT_RESERVED = 48, AT_CRC = 60 };

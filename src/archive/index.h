@@ -7,7 +7,7 @@
 #ifndef ARCHIVE_INDEX_H
 #define ARCHIVE_INDEX_H
 
-#include "codec/bytes.h"
+#include "bytes.h"
 #include "format.h"
 
 /* Where a record is. */

@@ -3,8 +3,7 @@
 #include <stdlib.h>
 
 #include "error.h"
-#include "model/sample/albedo.h"
-#include "model/table/evaluate.h"
+#include "model/table/table.h"
 #include "model/sample/sample.h"
 #include "reader.h"
 

@@ -10,7 +10,7 @@
 
 #include "codec/record.h"
 #include "error.h"
-#include "model/table/evaluate.h"
+#include "model/table/table.h"
 #include "baseline.h"
 
 struct profile_state {

@@ -7,6 +7,7 @@
 #ifndef CODEC_RECORD_H
 #define CODEC_RECORD_H
 
+#include "model/fidelity.h"
 #include "model/model.h"
 
 enum { RECORD_NAME_BYTES_MAX = 255, RECORD_SECTIONS_MAX = 64, SHA256_BYTES = 32 };

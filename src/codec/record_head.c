@@ -6,6 +6,11 @@
 #include "name.h"
 #include "section.h"
 
+uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t section_count)
+{
+	return (uint32_t)(208 + 32 * (layer_count + section_count) + name_bytes + 4);
+}
+
 /* Where things stand in a head, for error offsets. */
 enum {
 	AT_HEAD_BYTES = 8, AT_RECORD_BYTES = 12, AT_VERSION = 16, AT_DIMS = 24, AT_NAME_BYTES = 30, AT_LAYER_COUNT = 31,

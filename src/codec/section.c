@@ -26,11 +26,6 @@ void section_list_free(struct section_list *list)
 	*list = (struct section_list){ 0 };
 }
 
-uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t section_count)
-{
-	return (uint32_t)(208 + 32 * (layer_count + section_count) + name_bytes + 4);
-}
-
 /* Places the sections behind the head and measures the layers. */
 static bp_status head_lay_out(struct record_head *head, const struct section_list *sections, bp_error *error)
 {

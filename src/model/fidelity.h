@@ -4,7 +4,15 @@
 #ifndef MODEL_FIDELITY_H
 #define MODEL_FIDELITY_H
 
-#include "model.h"
+#include "fit.h"
+#include "merl/lattice.h"
+
+/* Fidelity of a decoded table against the measured one, over valid cells and the three channels; see fidelity.h. */
+struct fidelity {
+	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) */
+	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller cosine at the corner */
+	double largest_relative; /* largest |e - b|/(b + 1e-2) */
+};
 
 /*
  * Over valid cells of `truth` and three channels; e decoded, b measured, in 1/sr. Sums in a fixed

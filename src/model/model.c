@@ -26,10 +26,12 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 	model->horizon_limit = lattice_horizon_limit(lattice);
 	switch (options->profile) {
 	case PROFILE_PAPER:
-		status = paper_fit(lattice, options, model, error);
+		model->layer_count = PAPER_LAYERS;
+		status = paper_fit(lattice, &model->paper, model->colour, error);
 		break;
 	case PROFILE_SPECTRAL:
-		status = spectral_fit(lattice, options, model, error);
+		model->layer_count = 1; /* the encoder cuts layers */
+		status = spectral_fit(lattice, options, &model->spectral, model->colour, error);
 		break;
 	default:
 		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
@@ -62,9 +64,9 @@ bp_status model_expand(const struct model *model, uint32_t layers, struct expans
 		layers = model->layer_count;
 	switch (model->profile) {
 	case PROFILE_PAPER:
-		return paper_expand(model, layers, out, error);
+		return paper_expand(model->paper, model->colour, layers, out, error);
 	case PROFILE_SPECTRAL:
-		return spectral_expand(model, layers, out, error);
+		return spectral_expand(model->spectral, layers, out, error);
 	default:
 		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)model->profile);
 	}

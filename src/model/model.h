@@ -10,35 +10,11 @@
 #define MODEL_MODEL_H
 
 #include "merl/lattice.h"
+#include "fit.h"
+#include "model/robust/robust.h"
 
-enum profile { PROFILE_PAPER = 1, PROFILE_SPECTRAL = 2 };
-enum { LAYERS_MAX = 16 };
-
-struct fit_options {
-	enum profile profile;
-	uint32_t budget_bytes; /* largest record, everything included; 60,400 unless told */
-	double max_error;      /* > 0: instead, the smallest record whose log RMSE is at most this */
-	int effort;            /* 1..9, 5 unless told */
-};
-
-/* Robust regression of one channel on the achromatic model: measured = diffuse + specular * model (1/sr). */
-struct colour_fit {
-	double diffuse;  /* 1/sr */
-	double specular; /* the model is in 1/sr, so this is a ratio */
-	uint32_t iterations;
-	uint32_t converged; /* 1 or 0 */
-	double rejected;    /* share of valid cells with weight 0 */
-};
-
-/* Fidelity of a decoded table against the measured one, over valid cells and the three channels; see fidelity.h. */
-struct fidelity {
-	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) */
-	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller cosine at the corner */
-	double largest_relative; /* largest |e - b|/(b + 1e-2) */
-};
-
-struct paper_model;   /* paper.h */
-struct spectral_model; /* of the spectral profile */
+struct paper_model;    /* paper.h */
+struct spectral_model; /* spectral.h */
 
 struct model {
 	enum profile profile;
@@ -46,8 +22,8 @@ struct model {
 	double horizon_limit; /* lattice_horizon_limit of the source */
 	struct colour_fit colour[3];
 	uint32_t layer_count; /* 1..LAYERS_MAX; a decoded model has as many as were loaded */
-	struct paper_model *paper;                   /* PROFILE_PAPER, else NULL */
-	struct spectral_model *spectral;           /* PROFILE_SPECTRAL, else NULL */
+	struct paper_model *paper;       /* PROFILE_PAPER, else NULL */
+	struct spectral_model *spectral; /* PROFILE_SPECTRAL, else NULL */
 };
 
 bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error);

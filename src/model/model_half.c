@@ -1,4 +1,4 @@
-/* expand_half.c: every second corner of a model's table, by the quick way where the profile has one. */
+/* model_half.c: every second corner of a model's table, by the quick way where the profile has one. */
 #include "error.h"
 #include "model/spectral/spectral.h"
 #include "model.h"
@@ -32,7 +32,7 @@ bp_status model_expand_half(const struct model *model, uint32_t layers, struct e
 	if (!layers || layers > model->layer_count)
 		layers = model->layer_count;
 	if (model->profile == PROFILE_SPECTRAL && model->spectral && !model->spectral->coefficient[0])
-		return spectral_expand_half(model, layers, out, error);
+		return spectral_expand_half(model->spectral, layers, out, error);
 	bp_status status = expansion_alloc(model->dims, &whole, error);
 	if (status)
 		return status;

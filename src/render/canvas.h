@@ -6,7 +6,7 @@
 #ifndef RENDER_CANVAS_H
 #define RENDER_CANVAS_H
 
-#include "image.h"
+#include "picture.h"
 
 struct colour {
 	uint8_t r, g, b;

@@ -5,7 +5,9 @@
 #define RENDER_COMPARISON_H
 
 #include "model/fidelity.h"
+#include "energy.h"
 #include "metrics.h"
+#include "picture.h"
 
 /* Bit 1 << lighting for each lighting that is wanted. */
 enum { LIGHTINGS_ALL = (1 << LIGHTING_COUNT) - 1 };

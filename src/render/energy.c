@@ -1,4 +1,4 @@
-#include "metrics.h"
+#include "energy.h"
 
 #include <math.h>
 #include <stdlib.h>

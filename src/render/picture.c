@@ -1,4 +1,4 @@
-#include "image.h"
+#include "picture.h"
 
 #include <math.h>
 #include <png.h>

@@ -1,3 +1,5 @@
+#include "cores.h"
+
 #include "workers.h"
 
 #include <sched.h>
@@ -14,7 +16,7 @@ static unsigned quota_cores(void)
 	return fields == 2 && quota > 0 && period > 0 && quota / period < WORKERS_MAX ? (unsigned)(quota / period + 0.999) : 0;
 }
 
-unsigned workers_usable_cores(void)
+unsigned cores_usable(void)
 {
 	cpu_set_t set;
 	unsigned cores = 1;

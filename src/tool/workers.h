@@ -70,7 +70,4 @@ void workers_wait(struct workers *workers, int milliseconds);
 /* Stops all workers at once, whatever they do, and frees; NULL is allowed. */
 void workers_stop(struct workers *workers);
 
-/* Processors that this process may use: its affinity mask, and the quota of its control group. */
-unsigned workers_usable_cores(void);
-
 #endif

@@ -330,6 +330,7 @@ static bp_status paper_start(struct model *model, bp_error *error)
 	if (!paper)
 		return error_memory(error, sizeof *paper);
 	model->paper = paper;
+	paper->dims = dims;
 	paper->hd = (struct sparse_field){ .rows = dims.theta_h, .columns = dims.theta_d };
 	paper->hphi = (struct sparse_field){ .rows = dims.theta_h, .columns = dims.phi_d };
 	paper->slice = calloc(1, sizeof *paper->slice);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "error.h"
-#include "spectral_encode.h"
+#include "encoding.h"
 #include "codec/profile_codec.h"
 
 enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, FIELDS_VERSION = 2, PLANES_VERSION = 2 };
@@ -53,6 +53,7 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	*copy = *model;
 	copy->layer_count = e->layers;
 	copy->spectral = decoded;
+	decoded->dims = e->model->dims;
 	decoded->unit = e->model->unit;
 	memcpy(decoded->base, e->model->base, sizeof decoded->base);
 	memcpy(decoded->rotation, e->model->rotation, sizeof decoded->rotation);
@@ -175,6 +176,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 	if (count != model->layer_count + 1 || sections[0].entry->type != SECTION_FIELDS)
 		return error_set(error, BP_ERROR_CORRUPT, head->head_bytes, "%u sections where fields and planes of %u layers belong", count,
 		                 model->layer_count);
+	decoded->dims = head->dims;
 	*failed = 0;
 	status = fields_read(&sections[0], decoded, error);
 	if (!status)

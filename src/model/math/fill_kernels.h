@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "model/math/kernels.h"
+#include "kernels.h"
 
 /* One level of the pyramid of fill.h. */
 struct fill_level {

@@ -1,6 +1,6 @@
 /* fill_kernels.inc.h: all loops of fill_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
 #include "fill_kernels.h"
-#include "model/math/vector.h"
+#include "vector.h"
 
 #include "fill_steps.inc.h"
 

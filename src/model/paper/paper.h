@@ -7,7 +7,9 @@
 #ifndef MODEL_PAPER_PAPER_H
 #define MODEL_PAPER_PAPER_H
 
-#include "model/model.h"
+#include "merl/lattice.h"
+#include "model/fit.h"
+#include "model/robust/robust.h"
 
 /*
  * Layers: what a prefix of the record holds. Layer 0: the marginals and the colours, every pair taken as
@@ -31,6 +33,7 @@ uint32_t paper_plane_cells(uint32_t rows, uint32_t columns);
 uint32_t paper_shared_from(uint32_t theta_h);
 
 struct paper_model {
+	struct lattice_dims dims;
 	double scale;                  /* K, 1/sr: scale f_h f_d f_phi is the model when all pairs are independent */
 	float *marginal[3];            /* theta_h, theta_d, phi_d; mean 1 each, >= 0, finite */
 	struct sparse_field hd, hphi;  /* theta_h x theta_d and theta_h x phi_d: Haar, at most 1/16 of their cells */
@@ -38,12 +41,12 @@ struct paper_model {
 	struct sparse_field *slice;    /* c_dphi|h, theta_d x phi_d: Daubechies, at most 1/64 of their cells */
 };
 
-/* Fills model (zeroed, profile and dims set) but for the fidelity of its layers. On failure model_free cleans up. */
-bp_status paper_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error);
+/* *out, which paper_free frees, and the regression of each channel on it. Nothing is kept on failure. */
+bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, struct colour_fit colour[3], bp_error *error);
 void paper_free(struct paper_model *paper); /* NULL is allowed */
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h over the whole lattice: the model in units of scale; >= 0 and finite. */
-bp_status paper_achromatic(const struct paper_model *paper, struct lattice_dims dims, uint32_t layers, float *table, bp_error *error);
+bp_status paper_achromatic(const struct paper_model *paper, uint32_t layers, float *table, bp_error *error);
 /* See model_expand. */
-bp_status paper_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out, bp_error *error);
 
 #endif

@@ -88,8 +88,9 @@ static void slice_expand(struct slices *s, uint32_t i, float *out)
 	}
 }
 
-bp_status paper_achromatic(const struct paper_model *paper, struct lattice_dims dims, uint32_t layers, float *table, bp_error *error)
+bp_status paper_achromatic(const struct paper_model *paper, uint32_t layers, float *table, bp_error *error)
 {
+	const struct lattice_dims dims = paper->dims;
 	struct slices s;
 	bp_status status = slices_begin(paper, dims, layers, &s, error);
 
@@ -99,11 +100,10 @@ bp_status paper_achromatic(const struct paper_model *paper, struct lattice_dims 
 	return status;
 }
 
-bp_status paper_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out, bp_error *error)
 {
 	const struct paper_kernels *kernels = paper_kernels_get();
-	const struct paper_model *paper = model->paper;
-	const struct lattice_dims d = model->dims;
+	const struct lattice_dims d = paper->dims;
 	const size_t cells = (size_t)d.theta_d * d.phi_d;
 	float diffuse[3], specular[3], *achromatic = NULL;
 	struct slices s;
@@ -113,16 +113,16 @@ bp_status paper_expand(const struct model *model, uint32_t layers, struct expans
 	const double scale = frexp(paper->scale, &scale_exponent);
 	for (int c = 0; c < 3; c++) {
 		int e;
-		frexp(model->colour[c].diffuse, &e);
-		largest = model->colour[c].diffuse != 0 && e > largest ? e : largest;
-		frexp(model->colour[c].specular, &e);
-		largest = model->colour[c].specular * scale != 0 && e + scale_exponent > largest ? e + scale_exponent : largest;
+		frexp(colour[c].diffuse, &e);
+		largest = colour[c].diffuse != 0 && e > largest ? e : largest;
+		frexp(colour[c].specular, &e);
+		largest = colour[c].specular * scale != 0 && e + scale_exponent > largest ? e + scale_exponent : largest;
 	}
 	largest = largest > 1000 ? 1000 : largest;
 	out->unit = ldexp(1, largest);
 	for (int c = 0; c < 3; c++) {
-		diffuse[c] = (float)ldexp(model->colour[c].diffuse, -largest);
-		specular[c] = (float)ldexp(model->colour[c].specular * scale, scale_exponent - largest);
+		diffuse[c] = (float)ldexp(colour[c].diffuse, -largest);
+		specular[c] = (float)ldexp(colour[c].specular * scale, scale_exponent - largest);
 	}
 	const float limit = (float)fmin(VALUE_MAX / out->unit, 1e37);
 	bp_status status = slices_begin(paper, d, layers, &s, error);

@@ -98,20 +98,20 @@ static bp_status slices_fit(const struct density *density, struct paper_model *p
 	return status;
 }
 
-bp_status paper_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error)
+bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
 {
 	const struct lattice_dims d = lattice->dims;
 	const size_t largest_field = (size_t)(d.theta_h > d.theta_d ? d.theta_h : d.theta_d) * (d.theta_d > d.phi_d ? d.theta_d : d.phi_d);
-	struct paper_model *paper = model->paper = calloc(1, sizeof *paper);
+	struct paper_model *paper = calloc(1, sizeof *paper);
 	struct density density = {.value = NULL};
 	double *value = NULL;
 	uint8_t *defined = NULL;
 	float *achromatic = NULL;
 	double means[3];
 
-	(void)options; /* the fractions are fixed; the record's budget is the codec's */
 	if (!paper)
 		return error_memory(error, sizeof *paper);
+	paper->dims = d;
 	stage_enter(STAGE_CLEAN);
 	bp_status status = density_build(lattice, &density, error);
 	if (status)
@@ -136,14 +136,17 @@ bp_status paper_fit(const struct lattice *lattice, const struct fit_options *opt
 	if (status)
 		goto out;
 	density_free(&density);
-	status = paper_achromatic(paper, d, PAPER_LAYERS, achromatic, error);
+	status = paper_achromatic(paper, PAPER_LAYERS, achromatic, error);
 	stage_enter(STAGE_REGRESSION);
-	status = status ? status : robust_fit_colour(lattice, achromatic, paper->scale, model->colour, error);
-	model->layer_count = PAPER_LAYERS;
+	status = status ? status : robust_fit_colour(lattice, achromatic, paper->scale, colour, error);
 out:
 	density_free(&density);
 	free(value);
 	free(defined);
 	free(achromatic);
+	if (status)
+		paper_free(paper);
+	else
+		*out = paper;
 	return status;
 }

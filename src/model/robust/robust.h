@@ -36,7 +36,7 @@
 #ifndef MODEL_ROBUST_ROBUST_H
 #define MODEL_ROBUST_ROBUST_H
 
-#include "model/model.h"
+#include "merl/lattice.h"
 
 enum { ROBUST_ITERATIONS_MAX = 100 };
 
@@ -52,6 +52,15 @@ struct robust_fit {
  * BP_ERROR_MEMORY. Takes 24 n bytes of its own (32 n while it runs). Deterministic.
  */
 bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error);
+
+/* Robust regression of one channel on the achromatic model: measured = diffuse + specular * model (1/sr). */
+struct colour_fit {
+	double diffuse;  /* 1/sr */
+	double specular; /* the model is in 1/sr, so this is a ratio */
+	uint32_t iterations;
+	uint32_t converged; /* 1 or 0 */
+	double rejected;    /* share of valid cells with weight 0 */
+};
 
 /*
  * Colour: for each channel the regression of the measured values (1/sr) on unit * achromatic over the

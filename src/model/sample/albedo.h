@@ -8,7 +8,7 @@
 #ifndef MODEL_SAMPLE_ALBEDO_H
 #define MODEL_SAMPLE_ALBEDO_H
 
-#include "model/table/evaluate.h"
+#include "model/table/table.h"
 
 /* theta_o in radians in [0, pi/2); outside, and for NaN: 0. */
 void albedo_integrate(const struct table *table, float theta_o, float rgb[3]);

@@ -17,7 +17,7 @@
 #ifndef MODEL_SAMPLE_SAMPLE_H
 #define MODEL_SAMPLE_SAMPLE_H
 
-#include "model/table/evaluate.h"
+#include "albedo.h"
 
 struct sampler; /* immutable once built: any number of threads may use it */
 
@@ -31,7 +31,7 @@ size_t sampler_bytes(const struct sampler *sampler);
  * Returns 0, with wi = 0, where wo is below or on the horizon, zero, infinite or NaN.
  */
 float sampler_draw(const struct sampler *sampler, const float wo[3], const float u[3], float wi[3]);
-/* The density of wi given wo; 0 where either is unusable (see evaluate.h). */
+/* The density of wi given wo; 0 where either is unusable (see table.h). */
 float sampler_pdf(const struct sampler *sampler, const float wi[3], const float wo[3]);
 
 #endif

@@ -19,7 +19,9 @@
 #ifndef MODEL_SPECTRAL_SPECTRAL_H
 #define MODEL_SPECTRAL_SPECTRAL_H
 
-#include "model/model.h"
+#include "model/fit.h"
+#include "model/robust/robust.h"
+#include "spectrum.h"
 
 /* Of the unit, in 1/sr: a normal number with a reciprocal, and the hundredth of any value is one. */
 #define SPECTRAL_UNIT_LEAST 0x1p-1022
@@ -39,6 +41,7 @@ struct spectral_level {
  * ends before unit end[l].
  */
 struct spectral_model {
+	struct lattice_dims dims;
 	double unit;          /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
 	float base[3];        /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
 	float rotation[3][3]; /* orthonormal */
@@ -53,17 +56,19 @@ struct spectral_model {
 	uint32_t level_count;
 };
 
-bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error);
+/* *out, which spectral_free frees, and the regression of each channel on the measured mean of the three. Nothing is kept on failure. */
+bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out, struct colour_fit colour[3],
+                       bp_error *error);
 /* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
 float spectral_most(double unit);
-bp_status spectral_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error);
 /* Every second corner along each axis (extents even); *out has half the model's extents. Decoded models only. */
-bp_status spectral_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
+bp_status spectral_expand_half(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error);
 /*
  * The same, or with `half` the half, as 16-bit floats of table.h's expanded form in units of SPECTRAL_CODES_UNIT times the model's unit:
  * `channels` of them for every cell, 3 or 1, the channels' mean; rows of phi_d begin `stride` codes apart. No table of floats is made.
  */
-bp_status spectral_expand_codes(const struct model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error);
+bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error);
 void spectral_free(struct spectral_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
@@ -79,7 +84,6 @@ bp_status spectral_denoise(struct lattice_dims dims, float *coefficient, bool *n
  * spectral_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of
  * about so many bytes.
  */
-struct spectrum;
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3], double budget_bytes,
                           int steps, float *const table[3], bp_error *error);
 

@@ -16,7 +16,7 @@ float spectral_most(double unit)
 	return exponent > 1011 - 40 ? (float)(1011 - exponent) : 40;
 }
 
-bp_status spectral_expand_blocks(const struct model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error)
+bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error)
 {
 	const struct lattice_dims d = model->dims;
 	const size_t rows = (size_t)d.theta_h * d.theta_d, cells = rows * SPECTRUM_BLOCK;
@@ -26,7 +26,7 @@ bp_status spectral_expand_blocks(const struct model *model, uint32_t layers, spe
 	bp_status status = planes ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * cells * sizeof *planes);
 
 	if (!status)
-		status = spectral_terms_make(model->spectral, inverse, layers, &terms, error);
+		status = spectral_terms_make(model, inverse, layers, &terms, error);
 	for (uint32_t k = 0; !status && k < d.phi_d; k += SPECTRUM_BLOCK) {
 		const struct spectral_block block = {
 			.field = {planes, planes + cells, planes + 2 * cells},
@@ -58,10 +58,10 @@ static void values_take(void *user, const struct spectral_block *block)
 	                                        spectral_most(m->unit), rgb, p);
 }
 
-bp_status spectral_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error)
 {
-	struct values_target target = {model->spectral, out};
-	out->unit = model->spectral->unit;
+	struct values_target target = {model, out};
+	out->unit = model->unit;
 	return spectral_expand_blocks(model, layers, values_take, &target, error);
 }
 
@@ -82,15 +82,15 @@ static void codes_take(void *user, const struct spectral_block *block)
 	                                       spectral_most(m->unit), target->channels, out, target->stride);
 }
 
-bp_status spectral_expand_codes(const struct model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error)
+bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error)
 {
-	struct codes_target target = {model->spectral, channels, out, stride};
+	struct codes_target target = {model, channels, out, stride};
 	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, codes_take, &target, error);
 }
 
-bp_status spectral_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+bp_status spectral_expand_half(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error)
 {
-	struct values_target target = {model->spectral, out};
-	out->unit = model->spectral->unit;
+	struct values_target target = {model, out};
+	out->unit = model->unit;
 	return spectral_expand_half_blocks(model, layers, values_take, &target, error);
 }

@@ -68,7 +68,7 @@ static bp_status narrow_make(const struct spectrum_inverse *inverse, const struc
 	return BP_OK;
 }
 
-bp_status spectral_expand_half_blocks(const struct model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error)
+bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error)
 {
 	const struct lattice_dims d = model->dims, h = {d.theta_h / 2, d.theta_d / 2, d.phi_d / 2};
 	const size_t columns = (h.phi_d + COLUMNS_STEP - 1) / COLUMNS_STEP * COLUMNS_STEP, piece = ROWS_STEP * columns;
@@ -80,7 +80,7 @@ bp_status spectral_expand_half_blocks(const struct model *model, uint32_t layers
 	bp_status status = plane && fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, plane_bytes);
 
 	if (!status)
-		status = spectral_terms_make(model->spectral, inverse, layers, &terms, error);
+		status = spectral_terms_make(model, inverse, layers, &terms, error);
 	for (size_t f = 0; !status && f < 3; f++)
 		status = narrow_make(inverse, &terms, terms.start + f * d.phi_d, columns, plane, &narrow[f], error);
 	const size_t rows = (size_t)h.theta_h * h.theta_d;

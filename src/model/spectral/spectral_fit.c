@@ -157,13 +157,14 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 	return fields_make(lattice->dims, order, (const float(*)[3])rotation, true, fitted, error);
 }
 
-bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct model *model, bp_error *error)
+bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out, struct colour_fit colour[3],
+                       bp_error *error)
 {
 	const struct lattice_dims d = lattice->dims;
 	const size_t cells = lattice_cells(d);
 	/* An error bound is a promise about the measured values, their noise included. */
 	const bool denoise = !(options->max_error > 0), project = denoise && PROJECTIONS[options->effort] > 0;
-	struct spectral_model *fitted = model->spectral = calloc(1, sizeof *fitted);
+	struct spectral_model *fitted = calloc(1, sizeof *fitted);
 	struct spectrum *spectrum = NULL;
 	struct spectral_survey sample = {0};
 	float *filled = NULL, rotation[3][3];
@@ -172,17 +173,19 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 
 	if (!fitted)
 		return error_memory(error, sizeof *fitted);
-	model->layer_count = 1;
+	fitted->dims = d;
 	stage_enter(STAGE_CLEAN);
 	fitted->coefficient[0] = malloc(3 * cells * sizeof(float));
-	if (!fitted->coefficient[0])
+	if (!fitted->coefficient[0]) {
+		free(fitted);
 		return error_memory(error, 3 * cells * sizeof(float));
+	}
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
 	stage_enter(STAGE_REGRESSION);
 	status = spectral_survey_draw(lattice, &sample, error);
 	if (!status)
-		status = spectral_survey_colour(&sample, model->colour, error);
+		status = spectral_survey_colour(&sample, colour, error);
 	stage_enter(STAGE_CLEAN);
 	if (!status) {
 		spectral_survey_order(&sample, order);
@@ -207,5 +210,9 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		status = fields_improve(lattice, options, spectrum, order, filled, fitted, error);
 	free(filled);
 	spectrum_free(spectrum);
+	if (status)
+		spectral_free(fitted);
+	else
+		*out = fitted;
 	return status;
 }

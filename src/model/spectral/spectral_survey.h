@@ -4,7 +4,7 @@
 #ifndef MODEL_SPECTRAL_SPECTRAL_SURVEY_H
 #define MODEL_SPECTRAL_SPECTRAL_SURVEY_H
 
-#include "model/model.h"
+#include "model/robust/robust.h"
 
 struct spectral_survey {
 	double *x;    /* the achromatic value; owns the block */

@@ -21,7 +21,7 @@
 #ifndef MODEL_TABLE_COMPACT_H
 #define MODEL_TABLE_COMPACT_H
 
-#include "table.h"
+#include "table_parts.h"
 
 enum { COMPACT_HEAD_SHIFT = 14 }; /* of the 16-bit floats */
 enum { COMPACT_WIDTH_MAX = 18, COMPACT_RESIDUALS = 4, COMPACT_SHARES = 23, COMPACT_BLOCK_RGB = 32, COMPACT_BLOCK_MONO = 24 };

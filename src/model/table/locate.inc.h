@@ -2,7 +2,7 @@
  * locate.inc.h: what the kernels of both memory forms share: pairs of directions -> where to look.
  * The including file defines KERNEL(name); include once per file.
  */
-#include "table.h"
+#include "table_parts.h"
 
 /* One look-up of many: four rows of phi_d in memory, and the weights. */
 struct lookup {

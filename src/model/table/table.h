@@ -1,74 +1,50 @@
 /*
- * table.h: the inside of struct table, shared by the builders and the evaluation kernels.
+ * table.h: a decoded table in the memory form a renderer evaluates from.
+ *
+ *     model_expand -> expansion -> table_build -> table_evaluate      or: model -> table_build_model -> table_evaluate
+ *
+ * A stored value belongs to its cell's LOWER CORNER. Interpolation is trilinear on the corners, in
+ * 1/sr, periodic in phi_d; beyond the last corner of theta_h and theta_d the last value stays. The
+ * expansion holds a value in every cell, also below the horizon, where it continues the material
+ * smoothly, so no "not measured" mark enters an interpolation; directions below the horizon give 0.
+ *
+ * Expanded form: per cell and channel one unsigned 16-bit float, 6 exponent bits and 10 of mantissa:
+ * relative error at most 2^-11 down to 2^-61 of the table's largest value, 0 below. Rows of phi_d
+ * hold one cell more, a copy of the first. MERL, RGB: 8,796,616 bytes.
+ *
+ * Compact form: compact.h.
  */
 #ifndef MODEL_TABLE_TABLE_H
 #define MODEL_TABLE_TABLE_H
 
-#include "direction.h"
-#include "evaluate.h"
+#include "merl/lattice.h"
+#include "model/model.h"
 
-/* The kernels of one form and channel count, for one instruction set. */
-struct table_kernels {
-	void (*evaluate)(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
-	void (*nearest)(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
-	void (*batch)(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);
-};
+/* A table's largest value, in 1/sr, is cut to this: a float holds it with room to spare. */
+#define TABLE_LARGEST 1e34
 
-/* Where the values of one phi_d stand. */
-struct compact_place {
-	uint16_t block;          /* bytes from the row's start to its block of an even theta_d */
-	uint8_t residual, share; /* bytes from the block's start */
-	float place;             /* of the cell's start, between the two share codes */
-};
+enum table_form { TABLE_EXPANDED = 0, TABLE_COMPACT = 1 };
 
-/* The rows of phi_d of one theta_d and of the next. */
-struct compact_rows {
-	uint32_t offset, step; /* bytes from the slice's start to the first one, and from there to the other */
-};
+struct table; /* immutable once built: any number of threads may evaluate it */
 
-struct table {
-	struct table_kernels kernels;
-	f32x4 scale;      /* lattice_scale_of */
-	f32x4 top, inner; /* the last corners (H - 1, D - 1, P, 0), and less by a half: inside the last cell that has a next one */
-	struct lattice_dims dims;
-	enum table_form form;
-	int channels;
-	float unit;   /* value = unit * stored, 1/sr; finite */
-	uint32_t row;     /* expanded: uint16_t in a row of phi_d; compact: bytes in a pair of rows */
-	uint32_t slice;   /* ... from one theta_h to the next */
+/* channels: 3 (RGB), or 1: the mean of the three, given back in all of them. The expansion is not needed afterwards. */
+bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error);
+/*
+ * The same of all of a model's layers, or, with `half`, of every second corner of it (model_expand_half), and quicker: of a decoded
+ * spectral profile's expanded form no table of floats is made. BP_ERROR_ARGUMENT where there is no half.
+ */
+bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error);
+void table_free(struct table *table); /* NULL is allowed */
+size_t table_bytes(const struct table *table);
 
-	/* compact only */
-	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between share codes */
-	float half_reciprocal;
-	struct compact_place *place; /* of every phi_d, in the store after the cells */
-	struct compact_rows *rows;   /* of every theta_d, behind them */
-	/* (R, G, B, 0) in 1/sr = red sum times [0] + blue sum times [1] + sum of the means times [2]: of codes and means, with their weights */
-	f32x4 mix[3];
-
-	uint8_t *store; /* the cells, then TABLE_SLACK_BYTES that may be read and mean nothing */
-	size_t store_bytes;
-};
-
-enum { TABLE_SLACK_BYTES = 32 };
-
-/* [0]: one channel, [1]: RGB. */
-extern const struct table_kernels table_expanded_plain[2], table_expanded_avx2[2], table_compact_plain[2], table_compact_avx2[2];
-
-/* What brings values up to `largest` to [0, 1]; 0 for a table that is as good as all zero. */
-static inline float table_factor(float largest)
-{
-	return largest >= 0x1p-125f ? 1 / largest : 0;
-}
-
-/* A value of [0, 1] as 6 bits of exponent and 10 of mantissa, to nearest; 0 below 2^-62. 1.0 has exponent 63. */
-static inline uint16_t table_encode(float value)
-{
-	union {
-		float value;
-		uint32_t bits;
-	} u = {value};
-	int32_t code = (int32_t)((u.bits + 0x1000) >> 13) - ((127 - 63) << 10);
-	return (uint16_t)(code < 1 << 10 ? 0 : code);
-}
+/*
+ * The value for one pair of directions in 1/sr, finite and >= 0 in each channel.
+ * 0 where either direction is below or on the horizon, is zero, infinite or NaN; other lengths than 1 are normalised.
+ */
+void table_evaluate(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
+/* The value of the cell into which the directions fall (the MERL database's own look-up). */
+void table_nearest(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
+/* table_evaluate for `count` pairs in separate arrays of components; the same values to the bit. */
+void table_evaluate_batch(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);
 
 #endif

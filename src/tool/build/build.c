@@ -2,7 +2,9 @@
 
 #include "archive/writer.h"
 #include "error.h"
-#include "build_state.h"
+#include "build_inputs.h"
+#include "build_work.h"
+#include "outcomes.h"
 #include "tool/command.h"
 #include "tool/interrupt.h"
 #include "tool/progress.h"
@@ -14,131 +16,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-bool build_goes_on(const struct build *build)
-{
-	return !build->stopped && !interrupt_signal();
-}
-
-void build_stop(struct build *build, const char *file, const char *material, const bp_error *error)
-{
-	report_error(file, material, error);
-	build->stopped = true;
-}
-
-static void progress_update(const struct build *build)
-{
-	uint64_t done = build->totals.packed + build->totals.refused;
-	if (build->sources.stream_count == 0)
-		progress_show(done, build->items.count, build->bytes_total > 0 ? (double)build->bytes_done / (double)build->bytes_total : 0);
-	else if (build->manifest.count > 0)
-		progress_show(done, build->manifest.count, (double)done / (double)build->manifest.count);
-	else
-		progress_show(done, 0, -1); /* what a stream holds shows at its end */
-}
-
-/* Reports what is finished, in the items' order, so that the text does not depend on the workers' speed. */
-static void outcomes_report(struct build *build)
-{
-	while (build->reported < build->items.count && build_goes_on(build)) {
-		struct item *item = &build->items.item[build->reported];
-		if (!item->outcome)
-			return;
-		report_material(item, item->outcome, build->options->json, build->options->quiet);
-		free(item->outcome);
-		item->outcome = NULL;
-		build->reported++;
-		if (item->state == ITEM_REFUSED && build->options->strict)
-			build->stopped = true; /* no archive will come of it: why work on */
-	}
-}
-
-/* Checks what a worker delivered, and the file it was made from against the manifest. */
-static bp_status delivery_accept(struct build *build, struct item *item, const struct job_result *result, struct outcome *outcome,
-                                 bp_error *error)
-{
-	struct delivery delivery;
-	if (result->record_bytes < sizeof delivery)
-		return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered no record");
-	const size_t record_bytes = result->record_bytes - sizeof delivery;
-	memcpy(&delivery, result->record, sizeof delivery);
-	bp_status status = record_head_parse(result->record + sizeof delivery, record_bytes, &outcome->head, error);
-	if (!status && (outcome->head.record_bytes != record_bytes || strcmp(outcome->head.name, item->source.name) != 0))
-		status = error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered a damaged record");
-	const struct manifest_entry *entry = manifest_find(&build->manifest, item->source.name);
-	if (!status && entry)
-		status = manifest_check(entry, delivery.source.bytes, delivery.source.sha256, error);
-	outcome->source = delivery.source;
-	outcome->origin = delivery.origin;
-	return status;
-}
-
-/* Files an outcome under its item, and reports all whose turn has come. */
-static void outcome_take(struct build *build, struct item *item, struct outcome *outcome)
-{
-	if (outcome->error.status) {
-		item->state = ITEM_REFUSED;
-		build->totals.refused++;
-	} else {
-		item->state = ITEM_PACKED;
-		build->totals.packed++;
-		build->totals.reused += outcome->origin == RECORD_REUSED;
-		build->totals.kept += outcome->origin == RECORD_KEPT;
-		build->totals.source_bytes += outcome->source.bytes;
-	}
-	build->bytes_done += item->source.bytes != UINT64_MAX ? item->source.bytes : merl_file_bytes(LATTICE_MERL);
-	item->outcome = outcome;
-	outcomes_report(build);
-	progress_update(build);
-}
-
-static struct outcome *outcome_create(struct build *build)
-{
-	struct outcome *outcome = calloc(1, sizeof *outcome);
-	if (!outcome) {
-		bp_error error;
-		error_memory(&error, sizeof *outcome);
-		build_stop(build, NULL, NULL, &error);
-	}
-	return outcome;
-}
-
-void build_refuse(struct build *build, uint64_t number, const bp_error *error)
-{
-	struct outcome *outcome = outcome_create(build);
-	if (outcome) {
-		outcome->error = *error;
-		outcome_take(build, &build->items.item[number], outcome);
-	}
-}
-
-static void result_take(void *user, const struct job_result *result)
-{
-	struct build *build = user;
-	struct item *item = &build->items.item[result->number];
-	bp_error error;
-
-	if (build->stopped) /* by a result that came in with this one */
-		return;
-	struct outcome *outcome = outcome_create(build);
-	if (!outcome)
-		return;
-	outcome->seconds = result->seconds;
-	memcpy(outcome->stage_seconds, result->stage_seconds, sizeof outcome->stage_seconds);
-	outcome->error = result->error;
-	if (!outcome->error.status)
-		delivery_accept(build, item, result, outcome, &outcome->error);
-	if (!outcome->error.status) {
-		const uint8_t *record = result->record + sizeof(struct delivery);
-		if (spool_add(&build->spool, record, outcome->head.record_bytes, &item->spool_offset, &error)) {
-			free(outcome);
-			build_stop(build, build->options->output, NULL, &error);
-			return;
-		}
-		item->record_bytes = outcome->head.record_bytes;
-	}
-	outcome_take(build, item, outcome);
-}
-
 /* Hands out the listed items in name order, then members of streams as they are read, until all results are in. */
 static void work(struct build *build)
 {
@@ -146,7 +23,7 @@ static void work(struct build *build)
 	struct job job;
 
 	while (build_goes_on(build)) {
-		progress_update(build);
+		outcomes_show_progress(build);
 		if (workers_idle(build->workers) && build->submitted < build->listed_count) {
 			struct job listed = {.number = build->submitted, .name = build->sources.items[build->submitted].name, .slot = -1};
 			build->submitted++;
@@ -156,7 +33,7 @@ static void work(struct build *build)
 			ready = false;
 		} else if (streams && !ready) {
 			/* one member ahead of the workers, so that none waits for the decompression */
-			ready = build_stream_next(build, &job);
+			ready = build_inputs_next(build, &job);
 			streams = ready;
 		} else if (workers_busy(build->workers) > 0) {
 			workers_wait(build->workers, -1);
@@ -272,7 +149,7 @@ static void build_prepare_and_work(struct build *build)
 	                               .slot_count = streams ? count + 1 : 0,
 	                               .work = build_work,
 	                               .work_user = build,
-	                               .result = result_take,
+	                               .result = outcomes_take_result,
 	                               .result_user = build,
 	                               .wake_fd = wake_fd};
 	if (workers_start(&pool, &build->workers, &error)) {

@@ -1,5 +1,7 @@
+#include "build_inputs.h"
+
 #include "error.h"
-#include "build_state.h"
+#include "outcomes.h"
 #include "tool/report.h"
 
 #include <errno.h>
@@ -130,7 +132,7 @@ static bp_status member_copy(struct build *build, int fd, uint64_t *bytes, bp_er
 	return status;
 }
 
-bool build_stream_next(struct build *build, struct job *job)
+bool build_inputs_next(struct build *build, struct job *job)
 {
 	struct source_item member;
 	bp_error error;
@@ -151,7 +153,7 @@ bool build_stream_next(struct build *build, struct job *job)
 		if (!status)
 			return build_goes_on(build);
 		workers_slot_release(build->workers, slot);
-		build_refuse(build, number, &error);
+		outcomes_refuse(build, number, &error);
 	}
 	return false;
 }

@@ -1,9 +1,10 @@
 /*
- * build_state.h: what the files build*.c share while a build runs.
+ * build_state.h: what is known while a build runs.
  *
  *     build.c         the phases: collect, work, write
  *     build_inputs.c  inputs -> items and streams; members of streams -> slots and items
  *     build_work.c    what a worker does with a job
+ *     outcomes.c      what came of the items
  *     build_report.c  what is said
  */
 #ifndef TOOL_BUILD_BUILD_STATE_H
@@ -15,12 +16,6 @@
 #include "manifest.h"
 #include "spool.h"
 #include "tool/workers.h"
-
-/* What a worker delivers: this, and the record behind it. */
-struct delivery {
-	struct record_source source; /* the file that was read; of a record that was kept, its head has the measured one */
-	enum record_origin origin;
-};
 
 struct build {
 	const struct build_options *options;
@@ -46,23 +41,5 @@ bool build_goes_on(const struct build *build);
 
 /* Reports an error that ends the build. */
 void build_stop(struct build *build, const char *file, const char *material, const bp_error *error);
-
-/* Notes that an item cannot be packed; that is reported in its turn. */
-void build_refuse(struct build *build, uint64_t number, const bp_error *error);
-
-/* ---- build_inputs.c ---- */
-
-/* Fills sources and items. Reports what is skipped; stops the build at an illegal or double name. */
-void build_inputs_collect(struct build *build);
-
-/*
- * Reads on in the streams until a member is in a slot (*job is ready to submit; true) or all are
- * at their end (false). Takes in the workers' results meanwhile.
- */
-bool build_stream_next(struct build *build, struct job *job);
-
-/* ---- build_work.c ---- */
-
-worker_fn build_work; /* its user is the struct build, as it was when the worker was forked; it makes a delivery */
 
 #endif

@@ -1,5 +1,6 @@
 #include "tool/build/build.h"
 #include "tool/command.h"
+#include "tool/cores.h"
 #include "tool/facts.h"
 #include "tool/options.h"
 #include "tool/report.h"
@@ -30,7 +31,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 	};
 	struct build_options options = {
 		.fit = {.profile = PROFILE_SPECTRAL, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL},
-		.workers = workers_usable_cores(),
+		.workers = cores_usable(),
 	};
 	bool has_budget = false;
 	int64_t number;

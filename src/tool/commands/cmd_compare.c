@@ -1,4 +1,5 @@
 #include "tool/command.h"
+#include "tool/cores.h"
 #include "tool/compare/compare.h"
 #include "tool/interrupt.h"
 #include "tool/options.h"
@@ -261,7 +262,7 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	static const struct option names[] = {{"light", required_argument, NULL, LIGHT}, {"size", required_argument, NULL, SIZE},
 	                                      {"json", no_argument, NULL, JSON}, {"images", required_argument, NULL, IMAGES},
 	                                      {"jobs", required_argument, NULL, 'j'}, {0}};
-	struct compare compare = {.workers = workers_usable_cores(), .report.lightings = LIGHTINGS_ALL};
+	struct compare compare = {.workers = cores_usable(), .report.lightings = LIGHTINGS_ALL};
 	enum lighting lighting;
 	int64_t jobs, size = SPHERE_SIZE;
 	int option;

@@ -3,7 +3,7 @@
 #include "tool/options.h"
 #include "tool/report.h"
 
-#include "render/image.h"
+#include "render/picture.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,14 +1,14 @@
 /*
- * plane_contexts.h: what the coder of bit planes has learnt so far (FORMAT.md, "Bit planes", which has the meaning of the indices).
+ * planes_contexts.h: what the coder of bit planes has learnt so far (FORMAT.md, "Bit planes", which has the meaning of the indices).
  *
  * Most bits have a pair of contexts, signs a mix of four, and a quiet bit, one with nothing around it that is known to differ from 0,
  * a single one.
  */
-#ifndef CODEC_SPECTRAL_PLANE_CONTEXTS_H
-#define CODEC_SPECTRAL_PLANE_CONTEXTS_H
+#ifndef CODEC_SPECTRAL_PLANES_CONTEXTS_H
+#define CODEC_SPECTRAL_PLANES_CONTEXTS_H
 
 #include "codec/bit_mixer.h"
-#include "spectral_bands.h"
+#include "bands.h"
 
 enum { HARMONIC_CLASSES = 8, SIZES = 16, SIZE_TABLE = 647 };
 

@@ -3,8 +3,8 @@
  *
  * Both keep a sticky `failed`: a caller reads or writes a whole structure and asks once at its end.
  */
-#ifndef CODEC_BYTES_H
-#define CODEC_BYTES_H
+#ifndef BYTES_H
+#define BYTES_H
 
 #include <stdbool.h>
 #include <stddef.h>

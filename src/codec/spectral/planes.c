@@ -1,11 +1,11 @@
-#include "spectral_planes.h"
+#include "planes.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
 #include "memory.h"
-#include "plane_contexts.h"
+#include "planes_contexts.h"
 
 /*
  * Blocks that a decoder's pool begins with: enough for a preview, and small enough to stay with the process from material to material;

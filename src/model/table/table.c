@@ -135,7 +135,7 @@ static bp_status codes_build(const struct model *model, uint32_t layers, struct 
 	table->unit = (float)(model->spectral->unit * SPECTRAL_CODES_UNIT);
 	status = expanded_alloc(table, error);
 	if (!status)
-		status = spectral_expand_codes(model, layers, half, channels, (uint16_t *)(void *)table->store, table->row, error);
+		status = spectral_expand_codes(model->spectral, layers, half, channels, (uint16_t *)(void *)table->store, table->row, error);
 	if (status) {
 		table_free(table);
 		return status;

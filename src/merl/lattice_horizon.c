@@ -1,5 +1,5 @@
 /*
- * horizon.c: the lattice's cosines, and from them what lies below the horizon.
+ * lattice_horizon.c: the lattice's cosines, and from them what lies below the horizon.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "plane_contexts.h"
+#include "planes_contexts.h"
 
 /* Where nothing around is known to differ from 0, a cell, row, block or band starts at a probability of 1/50 as if it had seen six bits. */
 enum { QUIET_START = 83886 << 10 | 6 };

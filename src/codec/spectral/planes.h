@@ -1,15 +1,15 @@
 /*
- * spectral_planes.h: the bit planes of the spectral profile's levels, coded with mixed contexts (FORMAT.md, "Bit planes").
+ * planes.h: the bit planes of the spectral profile's levels, coded with mixed contexts (FORMAT.md, "Bit planes").
  *
  * A unit is one plane of one harmonic of one field. Units must be coded in order from 0: what has been coded is the
  * context of what follows, in the encoder and in the decoder alike.
  */
-#ifndef CODEC_SPECTRAL_SPECTRAL_PLANES_H
-#define CODEC_SPECTRAL_SPECTRAL_PLANES_H
+#ifndef CODEC_SPECTRAL_PLANES_H
+#define CODEC_SPECTRAL_PLANES_H
 
 #include "model/spectral/spectral.h"
 #include "codec/bit_mixer.h"
-#include "spectral_bands.h"
+#include "bands.h"
 
 enum { BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
 

@@ -1,14 +1,14 @@
 /*
- * plane_row.h: what stands around the cells of one row of a block, eight lanes at once: of the contexts of FORMAT.md, "Bit planes",
+ * planes_row.h: what stands around the cells of one row of a block, eight lanes at once: of the contexts of FORMAT.md, "Bit planes",
  * everything but for what changes in the row itself.
  */
-#ifndef CODEC_SPECTRAL_PLANE_ROW_H
-#define CODEC_SPECTRAL_PLANE_ROW_H
+#ifndef CODEC_SPECTRAL_PLANES_ROW_H
+#define CODEC_SPECTRAL_PLANES_ROW_H
 
 #include <string.h>
 
-#include "spectral_planes.h"
-#include "plane_contexts.h"
+#include "planes.h"
+#include "planes_contexts.h"
 
 #define INLINE inline __attribute__((always_inline))
 

@@ -1,12 +1,12 @@
 /*
- * spectral_rate.h: about how many bytes the bit planes take at a step, before they are coded.
+ * rate.h: about how many bytes the bit planes take at a step, before they are coded.
  *
  * A level costs about 3.5 bits for its place and its sign and one for every bit below its highest (measured on surrogates). How
  * well its neighbours predict it differs from material to material by a third; once some planes have been coded that is
  * known, and the rest follows to about 2 %.
  */
-#ifndef CODEC_SPECTRAL_SPECTRAL_RATE_H
-#define CODEC_SPECTRAL_SPECTRAL_RATE_H
+#ifndef CODEC_SPECTRAL_RATE_H
+#define CODEC_SPECTRAL_RATE_H
 
 #include "model/spectral/spectral.h"
 

@@ -1,5 +1,5 @@
 /*
- * plane_units.c: coding and decoding of one unit of bit planes (FORMAT.md, "Bit planes").
+ * planes_units.c: coding and decoding of one unit of bit planes (FORMAT.md, "Bit planes").
  *
  * One text serves both directions: every function takes `decode`, a constant after inlining. (Compiled for AVX2 besides it gained
  * 6 %: the time goes into bits that depend on each other.)
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "plane_row.h"
+#include "planes_row.h"
 
 static INLINE uint32_t size_of(const struct plane_contexts *c, uint32_t v)
 {

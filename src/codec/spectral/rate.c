@@ -1,4 +1,4 @@
-#include "spectral_rate.h"
+#include "rate.h"
 
 #include <math.h>
 

@@ -1,13 +1,13 @@
 /*
- * spectral_encode.h: bit planes of a fitted model within a budget, in layers.
+ * encoding.h: bit planes of a fitted model within a budget, in layers.
  *
  * The budget is met in two ways. A step is sought whose planes take a little more than there is room for, then the lowest
  * plane is cut off at a harmonic. Either alone would do; together they need one or two attempts and waste next to nothing.
  */
-#ifndef CODEC_SPECTRAL_SPECTRAL_ENCODE_H
-#define CODEC_SPECTRAL_SPECTRAL_ENCODE_H
+#ifndef CODEC_SPECTRAL_ENCODING_H
+#define CODEC_SPECTRAL_ENCODING_H
 
-#include "spectral_planes.h"
+#include "planes.h"
 
 struct encoding {
 	/* Set before encoding_make: */

@@ -1,4 +1,4 @@
-/* spectral_planes.h and bit_mixer.h: what goes in comes out, whatever it is, and a damaged stream ends. */
+/* planes.h and bit_mixer.h: what goes in comes out, whatever it is, and a damaged stream ends. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "codec/spectral/spectral_planes.h"
+#include "codec/spectral/planes.h"
 
 static uint64_t state = 5;
 static uint32_t random_below(uint32_t n)

@@ -1,4 +1,4 @@
-#include "spectral_bands.h"
+#include "bands.h"
 
 static void band_add(struct bands *bands, uint32_t orientation, uint32_t row, uint32_t column, uint32_t rows, uint32_t columns, int coarsest)
 {

@@ -1,10 +1,10 @@
-/* spectral_levels.c: coefficients into planes, and levels out of them. */
+/* planes_levels.c: coefficients into planes, and levels out of them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
-#include "spectral_planes.h"
+#include "planes.h"
 
 /* Sixteen lanes at once: is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
 static inline int any_above(const float *x, uint32_t least_bits)

@@ -1,12 +1,12 @@
 /*
- * spectral_settle.c: which levels are coded, and what the coder must know of them as a whole.
+ * planes_settle.c: which levels are coded, and what the coder must know of them as a whole.
  *
  * Thinning is a quantiser that knows what levels cost, cheaply: the limit below which a level of 1 is not worth its place falls
  * with the sum of the levels around it. (The limits were found on five surrogates; 0.19 dB at the same bytes, VARIANTS.md.)
  */
 #include <stdlib.h>
 
-#include "spectral_planes.h"
+#include "planes.h"
 
 /* In 1/100 of a step, by the sum of what is around: 0, 1, ... */
 enum { AROUND_MAX = 9 };

@@ -1,11 +1,11 @@
-#include "spectral_encode.h"
+#include "encoding.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "error.h"
 #include "model/math/fast_math.h"
-#include "spectral_rate.h"
+#include "rate.h"
 
 enum { FORESEEABLE = 2000 }; /* bytes of the higher planes below which too little is known to foresee the rest */
 static const float ROUNDING = 0.4f;      /* a level is rounded down up to 0.6: what is rare costs more than it is worth */

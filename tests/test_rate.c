@@ -1,4 +1,4 @@
-/* spectral_rate.h: what a step is said to cost is what counting tells, and near what coding takes. */
+/* rate.h: what a step is said to cost is what counting tells, and near what coding takes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "codec/spectral/spectral_planes.h"
-#include "codec/spectral/spectral_rate.h"
+#include "codec/spectral/planes.h"
+#include "codec/spectral/rate.h"
 
 static const struct lattice_dims DIMS = {40, 36, 48};
 static const double ROUND = 0.3;

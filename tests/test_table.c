@@ -12,9 +12,9 @@
 
 #include "model/table/compact.h"
 #include "model/table/direction.h"
-#include "model/table/evaluate.h"
-#include "model/math/kernels.h"
 #include "model/table/table.h"
+#include "model/math/kernels.h"
+#include "model/table/table_parts.h"
 
 static uint64_t state = 11;
 enum { COUNT = 200 };

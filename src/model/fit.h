@@ -1,0 +1,17 @@
+/* fit.h: what a fit is asked for, and a limit that all wings keep. */
+#ifndef MODEL_FIT_H
+#define MODEL_FIT_H
+
+#include <stdint.h>
+
+enum profile { PROFILE_PAPER = 1, PROFILE_SPECTRAL = 2 };
+enum { LAYERS_MAX = 16 };
+
+struct fit_options {
+	enum profile profile;
+	uint32_t budget_bytes; /* largest record, everything included; 60,400 unless told */
+	double max_error;      /* > 0: instead, the smallest record whose log RMSE is at most this */
+	int effort;            /* 1..9, 5 unless told */
+};
+
+#endif
