@@ -29,7 +29,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 {
 	struct input input = {data, count};
 	struct lattice lattice;
-	if (lattice_read(input_read, &input, NULL, NULL, true, &lattice, NULL) != BP_OK)
+	struct carried carried = {0};
+	if (lattice_read(input_read, &input, &(struct merl_reading){.any_dims = true, .carried = &carried}, &lattice, NULL) != BP_OK)
 		return 0;
 	for (size_t i = 0; i < lattice_cells(lattice.dims); i++)
 		for (int c = 0; c < 3; c++)
@@ -39,9 +40,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 		const struct fit_options options = {(enum profile)p, 60400, 0, 5};
 		uint8_t *record;
 		size_t bytes;
-		if (record_carried(&lattice, "m", &options, &record, &bytes, NULL) == BP_OK)
+		if (record_carried(&lattice, &carried, "m", &options, &record, &bytes, NULL) == BP_OK)
 			free(record);
 	}
 	lattice_free(&lattice);
+	free(carried.bytes);
 	return 0;
 }

@@ -72,12 +72,12 @@ static bool lattice_extracted(const struct record_head *head, const uint8_t *rec
 	return made;
 }
 
-static void carried_check(const struct lattice *lattice, const struct fit_options *options)
+static void carried_check(const struct lattice *lattice, const struct carried *carried, const struct fit_options *options)
 {
 	struct record_head head;
 	uint8_t *record;
 	size_t bytes;
-	if (record_carried(lattice, "m", options, &record, &bytes, NULL) != BP_OK || !record)
+	if (record_carried(lattice, carried, "m", options, &record, &bytes, NULL) != BP_OK || !record)
 		return;
 	if (record_head_parse(record, bytes, &head, NULL) != BP_OK || head.record_bytes != bytes)
 		abort();
@@ -97,14 +97,14 @@ static void record_carry(const struct record_head *head, const uint8_t *record)
 	struct lattice lattice;
 	if (!lattice_extracted(head, record, &lattice))
 		return;
-	lattice.carried = malloc(head->record_bytes);
-	lattice.carried_bytes = head->record_bytes;
-	memcpy(lattice.carried, record, head->record_bytes);
+	struct carried carried = {malloc(head->record_bytes), head->record_bytes};
+	memcpy(carried.bytes, record, head->record_bytes);
 	for (int n = 0; n < (bounds[1] > 0 ? 2 : 1); n++) {
 		const struct fit_options options = {head->profile, RECORD_BUDGET_MAX, bounds[n], 5};
-		carried_check(&lattice, &options);
+		carried_check(&lattice, &carried, &options);
 	}
 	lattice_free(&lattice);
+	free(carried.bytes);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);

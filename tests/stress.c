@@ -47,7 +47,7 @@ static void values_out(const struct packed_table *packed)
 static void case_run(struct trial *trial, bool values_only, struct packed_table *packed)
 {
 	trial->figures->cases++;
-	packed_make(trial->lattice, trial->name, &trial->options, packed);
+	packed_make(trial->lattice, NULL, trial->name, &trial->options, packed);
 	if (packed->status) {
 		trial->figures->refused++;
 		/* Nothing to pack, or a budget that the message says is too small; anything else is a fault. */

@@ -63,7 +63,7 @@ static void check_scale(const struct trial *trial, const struct packed_table *ba
 			largest = fmax(largest, largest_of(scaled.rgb[c], cells));
 		}
 		if (largest > 1e-290 && largest < 1e300) { /* beyond, digits are lost before the library sees them */
-			packed_make(&scaled, trial->name, &trial->options, &packed);
+			packed_make(&scaled, NULL, trial->name, &trial->options, &packed);
 			if (packed.status)
 				note(trial, WRONG, 1);
 			for (size_t c = 0; !packed.status && c < 3; c++)
@@ -82,7 +82,7 @@ static void check_permutation(const struct trial *trial, const struct packed_tab
 	struct packed_table packed;
 	for (size_t c = 0; c < 3; c++)
 		memcpy(permuted.rgb[place[c]], trial->lattice->rgb[c], cells * sizeof(double));
-	packed_make(&permuted, trial->name, &trial->options, &packed);
+	packed_make(&permuted, NULL, trial->name, &trial->options, &packed);
 	if (packed.status)
 		note(trial, WRONG, 1);
 	for (size_t c = 0; !packed.status && c < 3; c++)
@@ -115,7 +115,7 @@ static void check_mirror(const struct trial *trial, const struct packed_table *b
 			mirror.rgb[c][mirrored(d, n)] = trial->lattice->rgb[c][n];
 		mirror.valid[mirrored(d, n)] = trial->lattice->valid[n];
 	}
-	packed_make(&mirror, trial->name, &trial->options, &packed);
+	packed_make(&mirror, NULL, trial->name, &trial->options, &packed);
 	if (packed.status) {
 		note(trial, WRONG, 1);
 	} else {
@@ -150,16 +150,21 @@ static struct lattice above_horizon(const struct trial *trial, const struct latt
 static void check_generations(const struct trial *trial, const struct packed_table *base, enum decoded_form form, enum property once)
 {
 	struct lattice next = {0};
-	packed_to_lattice(base, form, &next);
+	struct carried carried = {0};
+	packed_to_lattice(base, form, &next, &carried);
 	struct lattice original = above_horizon(trial, &next);
 	struct packed_table packed = {.status = BP_OK};
 	struct fidelity figures;
 	double first = 0;
 
 	lattice_free(&next);
+	free(carried.bytes);
+	carried = (struct carried){0};
 	for (unsigned g = 0; g <= trial->generations && original.valid_count; g++) {
-		packed_make(g ? &next : &original, trial->name, &trial->options, &packed);
+		packed_make(g ? &next : &original, g ? &carried : NULL, trial->name, &trial->options, &packed);
 		lattice_free(&next);
+		free(carried.bytes);
+		carried = (struct carried){0};
 		if (packed.status) {
 			note(trial, WRONG, 1);
 			break;
@@ -169,15 +174,16 @@ static void check_generations(const struct trial *trial, const struct packed_tab
 			first = fmax(1e-3, figures.log_rmse);
 		else
 			note(trial, g == 1 ? once : (enum property)(once + 1), 20 * log10(fmax(1e-3, figures.log_rmse) / first));
-		packed_to_lattice(&packed, form, &next);
+		packed_to_lattice(&packed, form, &next, &carried);
 		packed_free(&packed);
 		if (g == 0 && form == DECODED_FILE) {
-			if (!next.carried)
+			if (!carried.bytes)
 				break;
 			trial->figures->carried++;
 		}
 	}
 	lattice_free(&next);
+	free(carried.bytes);
 	lattice_free(&original);
 }
 

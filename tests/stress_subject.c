@@ -11,14 +11,15 @@
 #include "merl/merl_file.h"
 #include "stress_cases.h"
 
-void packed_make(const struct lattice *lattice, const char *name, const struct fit_options *options, struct packed_table *out)
+void packed_make(const struct lattice *lattice, const struct carried *carried, const char *name,
+                 const struct fit_options *options, struct packed_table *out)
 {
 	static const struct record_source source = {.bytes = 1};
 	const size_t cells = lattice_cells(lattice->dims);
 	struct model *model = NULL;
 
 	memset(out, 0, sizeof *out);
-	out->status = record_carried(lattice, name, options, &out->record, &out->record_bytes, NULL);
+	out->status = carried ? record_carried(lattice, carried, name, options, &out->record, &out->record_bytes, NULL) : BP_OK;
 	if (!out->status && !out->record)
 		out->status = record_pack(lattice, name, &source, options, &out->record, &out->record_bytes, NULL, NULL);
 	if (!out->status)
@@ -53,19 +54,20 @@ size_t packed_bad_values(const struct packed_table *packed)
 	return bad;
 }
 
-static void through_file(const struct packed_table *packed, bool plain, const uint8_t *below, struct lattice *out)
+static void through_file(const struct packed_table *packed, bool plain, const uint8_t *below, struct lattice *out,
+                         struct carried *carried)
 {
 	char path[] = "/tmp/brdfpack-stress-XXXXXX";
 	const int fd = mkstemp(path);
 	if (fd < 0 || close(fd) != 0 ||
 	    lattice_write_path(path, &packed->table, below, plain ? NULL : packed->record, plain ? 0 : packed->record_bytes, NULL) != BP_OK ||
-	    lattice_read_path(path, NULL, NULL, true, out, NULL) != BP_OK || unlink(path) != 0) {
+	    lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = carried}, out, NULL) != BP_OK || unlink(path) != 0) {
 		fprintf(stderr, "%s: cannot be extracted by way of %s\n", packed->head.name, path);
 		exit(1);
 	}
 }
 
-void packed_to_lattice(const struct packed_table *packed, enum decoded_form form, struct lattice *out)
+void packed_to_lattice(const struct packed_table *packed, enum decoded_form form, struct lattice *out, struct carried *carried)
 {
 	const size_t cells = lattice_cells(packed->head.dims);
 	uint8_t *below = calloc(cells, 1);
@@ -73,13 +75,14 @@ void packed_to_lattice(const struct packed_table *packed, enum decoded_form form
 	if (!below || (form != DECODED_WHOLE && lattice_below_horizon(packed->head.dims, packed->head.horizon_limit, below, NULL) != BP_OK))
 		exit(1);
 	if (form != DECODED_WHOLE) {
-		through_file(packed, form == DECODED_PLAIN, below, out);
+		through_file(packed, form == DECODED_PLAIN, below, out, carried);
 	} else {
 		if (lattice_alloc(packed->head.dims, out, NULL) != BP_OK)
 			exit(1);
 		for (size_t c = 0; c < 3; c++)
 			memcpy(out->rgb[c], packed->value + c * cells, cells * sizeof(double));
 		lattice_validate(out);
+		*carried = (struct carried){0};
 	}
 	free(below);
 }

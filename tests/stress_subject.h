@@ -5,6 +5,7 @@
 #define TESTS_STRESS_SUBJECT_H
 
 #include "codec/record.h"
+#include "merl/carried.h"
 
 /* A lattice packed and decoded again; free with packed_free. */
 struct packed_table {
@@ -16,8 +17,9 @@ struct packed_table {
 	double *value;           /* 3 * cells, in 1/sr */
 };
 
-/* As a build does: a record that the lattice carries is kept where it serves, else the lattice is fitted. */
-void packed_make(const struct lattice *lattice, const char *name, const struct fit_options *options, struct packed_table *out);
+/* As a build does: a record that comes with the lattice (carried; NULL: none) is kept where it serves, else the lattice is fitted. */
+void packed_make(const struct lattice *lattice, const struct carried *carried, const char *name,
+                 const struct fit_options *options, struct packed_table *out);
 void packed_free(struct packed_table *packed);
 
 /* Values that are negative, NaN or infinite. */
@@ -29,7 +31,8 @@ enum decoded_form {
 	DECODED_PLAIN, /* the same without the record */
 	DECODED_WHOLE  /* the whole table, which no file holds */
 };
-void packed_to_lattice(const struct packed_table *packed, enum decoded_form form, struct lattice *out);
+/* What the file carries goes to *carried; the caller frees its bytes. */
+void packed_to_lattice(const struct packed_table *packed, enum decoded_form form, struct lattice *out, struct carried *carried);
 
 /*
  * Writes the records (ascending names) as an archive, verifies it deeply, loads every material in both forms with

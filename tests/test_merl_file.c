@@ -91,7 +91,7 @@ static void expect_refusal(struct image *image, bool any_dims, const char *words
 {
 	struct lattice lattice = {0};
 	bp_error error = {0};
-	assert_int_equal(lattice_read(image_read, image, NULL, NULL, any_dims, &lattice, &error), BP_ERROR_BAD_INPUT);
+	assert_int_equal(lattice_read(image_read, image, &(struct merl_reading){.any_dims = any_dims}, &lattice, &error), BP_ERROR_BAD_INPUT);
 	if (!strstr(error.message, words))
 		fail_msg("\"%s\" lacks \"%s\"", error.message, words);
 	assert_null(lattice.block);
@@ -111,7 +111,7 @@ static void a_lattice_is_scaled_and_lies_plane_by_plane(void **state)
 		image_set(&image, 120 + 18, -1e-9);
 		image_set(&image, 240 + 19, NAN);
 		image_set(&image, 240 + 20, INFINITY);
-		assert_int_equal(lattice_read(image_read, &image, transcript_add, &seen, true, &lattice, NULL), BP_OK);
+		assert_int_equal(lattice_read(image_read, &image, &(struct merl_reading){.seen = transcript_add, .seen_user = &seen, .any_dims = true}, &lattice, NULL), BP_OK);
 		assert_int_equal(lattice.dims.theta_h, 4);
 		assert_int_equal(lattice.dims.theta_d, 5);
 		assert_int_equal(lattice.dims.phi_d, 6);
@@ -187,7 +187,7 @@ static void zeros_and_extreme_values_are_legal(void **state)
 		struct lattice lattice;
 		for (size_t n = 0; n < 192; n++)
 			image_set(&image, n, values[v]);
-		assert_int_equal(lattice_read(image_read, &image, NULL, NULL, true, &lattice, NULL), BP_OK);
+		assert_int_equal(lattice_read(image_read, &image, &(struct merl_reading){.any_dims = true}, &lattice, NULL), BP_OK);
 		assert_int_equal(lattice.valid_count, 64);
 		for (size_t n = 0; n < 64; n++)
 			assert_true(isfinite(lattice.rgb[2][n]) && lattice.rgb[2][n] >= 0);
@@ -201,7 +201,7 @@ static void an_error_of_the_stream_is_passed_on(void **state)
 	(void)state;
 	struct lattice lattice;
 	bp_error error;
-	assert_int_equal(lattice_read(broken_read, NULL, NULL, NULL, false, &lattice, &error), BP_ERROR_IO);
+	assert_int_equal(lattice_read(broken_read, NULL, NULL, &lattice, &error), BP_ERROR_IO);
 	assert_string_equal(error.message, "the disk is gone");
 }
 
@@ -216,7 +216,7 @@ static void put_file(const char *path, const void *bytes, size_t count)
 static bp_status read_path(const char *path, bp_error *error)
 {
 	struct lattice lattice = {0};
-	const bp_status status = lattice_read_path(path, NULL, NULL, true, &lattice, error);
+	const bp_status status = lattice_read_path(path, &(struct merl_reading){.any_dims = true}, &lattice, error);
 	lattice_free(&lattice);
 	return status;
 }
@@ -281,7 +281,7 @@ static void a_written_table_is_laid_out_byte_for_byte_and_reads_back(void **stat
 			assert_true(value == 0.25 * (double)((n % 140 + 1) * (n / 140 + 1)) / MERL_SCALE[n / 140]);
 	}
 	struct lattice lattice;
-	assert_int_equal(lattice_read_path(in_folder("out.binary"), NULL, NULL, true, &lattice, NULL), BP_OK);
+	assert_int_equal(lattice_read_path(in_folder("out.binary"), &(struct merl_reading){.any_dims = true}, &lattice, NULL), BP_OK);
 	assert_int_equal(lattice.valid_count, 138);
 	lattice_free(&lattice);
 	expansion_free(&table);
@@ -300,7 +300,7 @@ static void values_beyond_the_range_of_the_file_stay_finite(void **state)
 		for (size_t n = 0; n < 64; n++)
 			table.rgb[c][n] = 100;
 	assert_int_equal(lattice_write_path(in_folder("huge.binary"), &table, below, NULL, 0, NULL), BP_OK);
-	assert_int_equal(lattice_read_path(in_folder("huge.binary"), NULL, NULL, true, &lattice, NULL), BP_OK);
+	assert_int_equal(lattice_read_path(in_folder("huge.binary"), &(struct merl_reading){.any_dims = true}, &lattice, NULL), BP_OK);
 	assert_int_equal(lattice.valid_count, 64);
 	lattice_free(&lattice);
 	expansion_free(&table);

@@ -66,23 +66,35 @@ static void packed_free(struct packed *packed)
 	expansion_free(&packed->table);
 }
 
+/* What is read from a file. */
+struct file {
+	struct lattice lattice;
+	struct carried carried;
+};
+
+static void file_free(struct file *file)
+{
+	lattice_free(&file->lattice);
+	free(file->carried.bytes);
+}
+
 /* Through a file, which carries these bytes. */
-static void extracted(const struct packed *packed, const uint8_t *carried, size_t bytes, struct lattice *out)
+static void extracted(const struct packed *packed, const uint8_t *carried, size_t bytes, struct file *out)
 {
 	char path[] = "/tmp/brdfpack-carried-XXXXXX";
 	const int fd = mkstemp(path);
 	assert_true(fd >= 0);
 	close(fd);
 	assert_int_equal(lattice_write_path(path, &packed->table, packed->below, carried, bytes, NULL), BP_OK);
-	assert_int_equal(lattice_read_path(path, NULL, NULL, true, out, NULL), BP_OK);
+	assert_int_equal(lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = &out->carried}, &out->lattice, NULL), BP_OK);
 	unlink(path);
 }
 
-static bool kept(const struct lattice *lattice, const char *name, struct fit_options options)
+static bool kept(const struct file *file, const char *name, struct fit_options options)
 {
 	uint8_t *record = NULL;
 	size_t bytes;
-	assert_int_equal(record_carried(lattice, name, &options, &record, &bytes, NULL), BP_OK);
+	assert_int_equal(record_carried(&file->lattice, &file->carried, name, &options, &record, &bytes, NULL), BP_OK);
 	free(record);
 	return record != NULL;
 }
@@ -92,17 +104,17 @@ static void the_record_stays_the_same_byte_for_byte(void **state)
 	(void)state;
 	for (int p = 0; p < 2; p++) {
 		struct packed first;
-		struct lattice lattice;
+		struct file file;
 		uint8_t *record;
 		size_t bytes;
 		packed_make(&USUAL[p], &first);
-		extracted(&first, first.record, first.bytes, &lattice);
-		assert_int_equal(record_carried(&lattice, "first", &USUAL[p], &record, &bytes, NULL), BP_OK);
+		extracted(&first, first.record, first.bytes, &file);
+		assert_int_equal(record_carried(&file.lattice, &file.carried, "first", &USUAL[p], &record, &bytes, NULL), BP_OK);
 		assert_non_null(record);
 		assert_int_equal(bytes, first.bytes);
 		assert_memory_equal(record, first.record, bytes);
 		free(record);
-		lattice_free(&lattice);
+		file_free(&file);
 		packed_free(&first);
 	}
 }
@@ -112,10 +124,10 @@ static void another_name_is_all_that_changes(void **state)
 	(void)state;
 	for (int p = 0; p < 2; p++) {
 		struct packed first, again = {0};
-		struct lattice lattice;
+		struct file file;
 		packed_make(&USUAL[p], &first);
-		extracted(&first, first.record, first.bytes, &lattice);
-		assert_int_equal(record_carried(&lattice, "second", &USUAL[p], &again.record, &again.bytes, NULL), BP_OK);
+		extracted(&first, first.record, first.bytes, &file);
+		assert_int_equal(record_carried(&file.lattice, &file.carried, "second", &USUAL[p], &again.record, &again.bytes, NULL), BP_OK);
 		assert_non_null(again.record);
 		decode(&again);
 		for (int c = 0; c < 3; c++)
@@ -128,7 +140,7 @@ static void another_name_is_all_that_changes(void **state)
 		for (uint32_t l = 0; l < first.head.layer_count; l++)
 			assert_memory_equal(&again.head.layers[l].fidelity, &first.head.layers[l].fidelity, sizeof(struct fidelity));
 		assert_int_equal(again.head.codec_version, first.head.codec_version);
-		lattice_free(&lattice);
+		file_free(&file);
 		packed_free(&first);
 		packed_free(&again);
 	}
@@ -138,20 +150,20 @@ static void a_changed_value_makes_it_a_measurement_again(void **state)
 {
 	(void)state;
 	struct packed first;
-	struct lattice lattice;
+	struct file file;
 	packed_make(&USUAL[1], &first);
 	for (int what = 0; what < 4; what++) {
-		extracted(&first, first.record, first.bytes, &lattice);
-		assert_true(kept(&lattice, "m", USUAL[1]));
+		extracted(&first, first.record, first.bytes, &file);
+		assert_true(kept(&file, "m", USUAL[1]));
 		const size_t cells = lattice_cells(DIMS);
 		size_t cell = what == 3 ? 0 : cells / 2;
-		while (lattice.valid[cell] != (what != 2))
+		while (file.lattice.valid[cell] != (what != 2))
 			cell = (cell + 1) % cells;
 		if (what < 2)
-			lattice.rgb[2 * what][cell] *= 1 + 0x1p-50;
-		lattice.valid[cell] ^= what >= 2; /* 2: one more is measured; 3: one less */
-		assert_false(kept(&lattice, "m", USUAL[1]));
-		lattice_free(&lattice);
+			file.lattice.rgb[2 * what][cell] *= 1 + 0x1p-50;
+		file.lattice.valid[cell] ^= what >= 2; /* 2: one more is measured; 3: one less */
+		assert_false(kept(&file, "m", USUAL[1]));
+		file_free(&file);
 	}
 	packed_free(&first);
 }
@@ -160,33 +172,33 @@ static void another_request_is_packed_anew(void **state)
 {
 	(void)state;
 	struct packed first, bounded;
-	struct lattice lattice;
+	struct file file;
 	struct fit_options options = USUAL[1];
 	packed_make(&options, &first);
-	extracted(&first, first.record, first.bytes, &lattice);
+	extracted(&first, first.record, first.bytes, &file);
 	options.effort = 9; /* what is exact cannot be better */
-	assert_true(kept(&lattice, "m", options));
+	assert_true(kept(&file, "m", options));
 	options.budget_bytes = 100000;
-	assert_true(kept(&lattice, "m", options));
+	assert_true(kept(&file, "m", options));
 	options.budget_bytes = (uint32_t)first.bytes;
-	assert_true(kept(&lattice, "fives", options)); /* as long as its name is no longer */
-	assert_false(kept(&lattice, "longer", options));
+	assert_true(kept(&file, "fives", options)); /* as long as its name is no longer */
+	assert_false(kept(&file, "longer", options));
 	options.budget_bytes = (uint32_t)first.bytes - 1;
-	assert_false(kept(&lattice, "fives", options));
-	assert_true(kept(&lattice, "four", options));
-	assert_false(kept(&lattice, "m", USUAL[0]));
+	assert_false(kept(&file, "fives", options));
+	assert_true(kept(&file, "four", options));
+	assert_false(kept(&file, "m", USUAL[0]));
 	options = (struct fit_options){PROFILE_SPECTRAL, 100000, 0.01, 5};
-	assert_false(kept(&lattice, "m", options)); /* a smaller record might do */
-	assert_false(kept(&lattice, "no/name", USUAL[1])); /* record_pack says why */
-	lattice_free(&lattice);
+	assert_false(kept(&file, "m", options)); /* a smaller record might do */
+	assert_false(kept(&file, "no/name", USUAL[1])); /* record_pack says why */
+	file_free(&file);
 	packed_free(&first);
 
 	packed_make(&options, &bounded);
-	extracted(&bounded, bounded.record, bounded.bytes, &lattice);
-	assert_true(kept(&lattice, "m", options));
+	extracted(&bounded, bounded.record, bounded.bytes, &file);
+	assert_true(kept(&file, "m", options));
 	options.max_error = 0.02;
-	assert_false(kept(&lattice, "m", options));
-	lattice_free(&lattice);
+	assert_false(kept(&file, "m", options));
+	file_free(&file);
 	packed_free(&bounded);
 }
 
@@ -194,24 +206,24 @@ static void a_damaged_or_foreign_record_is_not_kept(void **state)
 {
 	(void)state;
 	struct packed first;
-	struct lattice lattice;
+	struct file file;
 	packed_make(&USUAL[1], &first);
 	uint8_t *bytes = malloc(first.bytes);
 	assert_non_null(bytes);
 	for (size_t at = 0; at < first.bytes; at += at < 300 ? 1 : 97) {
 		memcpy(bytes, first.record, first.bytes);
 		bytes[at] ^= 0x10;
-		extracted(&first, bytes, first.bytes, &lattice);
-		assert_false(kept(&lattice, "m", USUAL[1]));
-		lattice_free(&lattice);
+		extracted(&first, bytes, first.bytes, &file);
+		assert_false(kept(&file, "m", USUAL[1]));
+		file_free(&file);
 	}
-	extracted(&first, first.record, first.bytes - 1, &lattice);
-	assert_false(kept(&lattice, "m", USUAL[1]));
-	lattice_free(&lattice);
-	extracted(&first, NULL, 0, &lattice);
-	assert_null(lattice.carried);
-	assert_false(kept(&lattice, "m", USUAL[1]));
-	lattice_free(&lattice);
+	extracted(&first, first.record, first.bytes - 1, &file);
+	assert_false(kept(&file, "m", USUAL[1]));
+	file_free(&file);
+	extracted(&first, NULL, 0, &file);
+	assert_null(file.carried.bytes);
+	assert_false(kept(&file, "m", USUAL[1]));
+	file_free(&file);
 	free(bytes);
 	packed_free(&first);
 }
@@ -270,14 +282,14 @@ static void a_record_that_does_not_decode_layer_by_layer_is_not_kept(void **stat
 		assert_true(first.head.layer_count > 1);
 		for (int n = 0; n < 4; n++) {
 			const struct fit_options options = {USUAL[p].profile, 20000, 0, 5};
-			struct lattice lattice;
+			struct file file;
 			uint8_t *record;
 			size_t bytes;
 			foreign_make(&first, changes[n], &record, &bytes);
-			extracted(&first, record, bytes, &lattice);
-			assert_int_equal(lattice.carried_bytes, bytes);
-			assert_int_equal(kept(&lattice, "m", options), n == 3); /* what is optional does no harm */
-			lattice_free(&lattice);
+			extracted(&first, record, bytes, &file);
+			assert_int_equal(file.carried.count, bytes);
+			assert_int_equal(kept(&file, "m", options), n == 3); /* what is optional does no harm */
+			file_free(&file);
 			free(record);
 		}
 		packed_free(&first);
@@ -289,16 +301,16 @@ static void without_room_nothing_is_carried(void **state)
 {
 	(void)state;
 	struct packed packed = {0};
-	struct lattice lattice;
-	glossy_lattice_make((struct lattice_dims){4, 4, 4}, 1, &lattice);
-	assert_int_equal(record_pack(&lattice, "m", &MEASURED, &USUAL[1], &packed.record, &packed.bytes, NULL, NULL), BP_OK);
-	lattice_free(&lattice);
+	struct file file = {0};
+	glossy_lattice_make((struct lattice_dims){4, 4, 4}, 1, &file.lattice);
+	assert_int_equal(record_pack(&file.lattice, "m", &MEASURED, &USUAL[1], &packed.record, &packed.bytes, NULL, NULL), BP_OK);
+	file_free(&file);
 	decode(&packed);
-	extracted(&packed, packed.record, packed.bytes, &lattice);
-	assert_null(lattice.carried);
+	extracted(&packed, packed.record, packed.bytes, &file);
+	assert_null(file.carried.bytes);
 	for (size_t n = 0; n < 64; n++)
-		assert_int_equal(lattice.valid[n], !packed.below[n]);
-	lattice_free(&lattice);
+		assert_int_equal(file.lattice.valid[n], !packed.below[n]);
+	file_free(&file);
 	packed_free(&packed);
 }
 
@@ -307,7 +319,7 @@ static void a_shortened_record_is_kept_as_it_is(void **state)
 {
 	(void)state;
 	struct packed first, shorter = {0};
-	struct lattice lattice;
+	struct file file;
 	struct record_head head;
 	uint8_t *record;
 	size_t bytes;
@@ -315,13 +327,13 @@ static void a_shortened_record_is_kept_as_it_is(void **state)
 	assert_true(first.head.layer_count > 1);
 	assert_int_equal(record_keep_layers(first.record, first.bytes, 1, &shorter.record, &shorter.bytes, NULL), BP_OK);
 	decode(&shorter);
-	extracted(&shorter, shorter.record, shorter.bytes, &lattice);
-	assert_int_equal(record_carried(&lattice, "m", &USUAL[1], &record, &bytes, NULL), BP_OK);
+	extracted(&shorter, shorter.record, shorter.bytes, &file);
+	assert_int_equal(record_carried(&file.lattice, &file.carried, "m", &USUAL[1], &record, &bytes, NULL), BP_OK);
 	assert_non_null(record);
 	assert_int_equal(record_head_parse(record, bytes, &head, NULL), BP_OK);
 	assert_int_equal(head.codec_version, RECORD_LAYERS_DROPPED);
 	free(record);
-	lattice_free(&lattice);
+	file_free(&file);
 	packed_free(&first);
 	packed_free(&shorter);
 }

@@ -325,7 +325,7 @@ static void members_of_zip_and_plain_tar_are_items_that_can_be_read_in_any_order
 		struct lattice lattice;
 		bp_error error;
 		for (int n = 0; n < 3; n++) {
-			assert_int_equal(source_item_read(&list.items[n], &cursor, NULL, NULL, &lattice, &error), BP_ERROR_BAD_INPUT);
+			assert_int_equal(source_item_read(&list.items[n], &cursor, NULL, &lattice, &error), BP_ERROR_BAD_INPUT);
 			expect_words(error.message, "not a MERL file");
 		}
 		source_cursor_close(&cursor);
@@ -431,11 +431,11 @@ static void a_whole_table_comes_out_of_a_zip(void **state)
 	bp_error error;
 	assert_string_equal(names_of(&list), "black long short ");
 	for (int n = 0; n < 2; n++) {
-		assert_int_equal(source_item_read(&list.items[n], &cursor, NULL, NULL, &lattice, NULL), BP_OK);
+		assert_int_equal(source_item_read(&list.items[n], &cursor, NULL, &lattice, NULL), BP_OK);
 		assert_int_equal(lattice.valid_count, 1458000);
 		lattice_free(&lattice);
 	}
-	assert_int_equal(source_item_read(&list.items[2], &cursor, NULL, NULL, &lattice, &error), BP_ERROR_BAD_INPUT);
+	assert_int_equal(source_item_read(&list.items[2], &cursor, NULL, &lattice, &error), BP_ERROR_BAD_INPUT);
 	assert_string_equal(error.message, "truncated: expected 34992012 bytes, found 34992011");
 	source_cursor_close(&cursor);
 	source_list_free(&list);

@@ -238,7 +238,7 @@ bool eval_time(const bp_archive *archive, uint64_t index, const char *path, stru
 	bp_error error;
 	double seconds;
 	bool good = true;
-	if (bp_archive_info(archive, index, &info, &error) || lattice_read_path(path, NULL, NULL, false, &raw, &error)) {
+	if (bp_archive_info(archive, index, &info, &error) || lattice_read_path(path, NULL, &raw, &error)) {
 		fprintf(stderr, "brdfpack-bench-eval: %s: %s\n", path, error.message);
 		return false;
 	}

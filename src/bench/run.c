@@ -139,7 +139,7 @@ static bp_status read_truth(const struct run *run, const char *name, struct latt
 	bp_status status;
 
 	snprintf(path, sizeof path, "%s/%s.binary", run->truth, name);
-	status = lattice_read_path(path, NULL, NULL, true, truth, error);
+	status = lattice_read_path(path, &(struct merl_reading){.any_dims = true}, truth, error);
 	if (!status && !same_dims(truth->dims, dims))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s has other extents than the input", path);
 	return status;
@@ -158,7 +158,7 @@ static void run_material(struct run *run, int at)
 
 	inputs_name(run->inputs.paths[at], name, sizeof name);
 	if (time_read(run->inputs.paths[at], &seconds, &raw, &raw_bytes, &error) ||
-	    lattice_read_path(run->inputs.paths[at], NULL, NULL, true, &lattice, &error)) {
+	    lattice_read_path(run->inputs.paths[at], &(struct merl_reading){.any_dims = true}, &lattice, &error)) {
 		complain(run, name, "reading", &error);
 		goto out;
 	}

@@ -9,11 +9,12 @@
 #include "name.h"
 
 /* What can be told from its head alone. */
-static bool head_serves(const struct record_head *head, const struct lattice *lattice, size_t name_bytes, const struct fit_options *options)
+static bool head_serves(const struct record_head *head, const struct lattice *lattice, size_t carried_bytes, size_t name_bytes,
+                        const struct fit_options *options)
 {
 	const uint64_t bytes = head->record_bytes - strlen(head->name) + name_bytes;
 	const bool bounded = options->max_error > 0;
-	return head->record_bytes == lattice->carried_bytes && head->profile == options->profile &&
+	return head->record_bytes == carried_bytes && head->profile == options->profile &&
 	       !memcmp(&head->dims, &lattice->dims, sizeof head->dims) && bytes <= (bounded ? RECORD_BUDGET_MAX : options->budget_bytes) &&
 	       (!bounded || head->options.max_error == options->max_error);
 }
@@ -36,12 +37,12 @@ static bp_status model_compare(const struct lattice *lattice, const struct model
 }
 
 /* Decodes every layer, as whoever loads the record may ask for any, and compares the last. */
-static bp_status record_compare(const struct lattice *lattice, const struct record_head *head, bool *same, bp_error *error)
+static bp_status record_compare(const struct lattice *lattice, const uint8_t *record, const struct record_head *head, bool *same, bp_error *error)
 {
 	bp_status status = BP_OK;
 	for (uint32_t layers = 1; layers <= head->layer_count && !status; layers++) {
 		struct model *model = NULL;
-		status = record_decode_whole(head, layers, lattice->carried, &model, error);
+		status = record_decode_whole(head, layers, record, &model, error);
 		if (!status && layers == head->layer_count)
 			status = model_compare(lattice, model, same, error);
 		model_free(model);
@@ -49,21 +50,21 @@ static bp_status record_compare(const struct lattice *lattice, const struct reco
 	return status;
 }
 
-bp_status record_carried(const struct lattice *lattice, const char *name, const struct fit_options *options, uint8_t **record,
-                         size_t *record_bytes, bp_error *error)
+bp_status record_carried(const struct lattice *lattice, const struct carried *carried, const char *name, const struct fit_options *options,
+                         uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	const size_t name_bytes = strlen(name);
 	struct record_head head;
 	bool same = false;
 
 	*record = NULL;
-	if (!lattice->carried || name_fault(name, name_bytes) || record_head_parse(lattice->carried, lattice->carried_bytes, &head, NULL) != BP_OK ||
-	    !head_serves(&head, lattice, name_bytes, options))
+	if (!carried->bytes || name_fault(name, name_bytes) || record_head_parse(carried->bytes, carried->count, &head, NULL) != BP_OK ||
+	    !head_serves(&head, lattice, carried->count, name_bytes, options))
 		return BP_OK;
 	const enum stage before = stage_enter(STAGE_CODE);
-	bp_status status = record_compare(lattice, &head, &same, error);
+	bp_status status = record_compare(lattice, carried->bytes, &head, &same, error);
 	if (!status && same)
-		status = record_rename(lattice->carried, lattice->carried_bytes, name, record, record_bytes, error);
+		status = record_rename(carried->bytes, carried->count, name, record, record_bytes, error);
 	stage_enter(before);
 	return status == BP_ERROR_MEMORY ? status : BP_OK; /* any other says that there is no record to keep */
 }

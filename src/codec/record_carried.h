@@ -9,10 +9,11 @@
 #ifndef CODEC_RECORD_CARRIED_H
 #define CODEC_RECORD_CARRIED_H
 
+#include "merl/carried.h"
 #include "record.h"
 
 /*
- * The record that the lattice carries, byte for byte but for the name: source, options and errors stay those of the measured
+ * The record that came with the lattice, byte for byte but for the name: source, options and errors stay those of the measured
  * file that it was made from. *record is malloc'ed, or NULL where the lattice has to be fitted, because
  *
  * - nothing is carried, or the record is damaged, or one of its layers does not decode;
@@ -22,7 +23,7 @@
  *
  * Fails only where memory runs out.
  */
-bp_status record_carried(const struct lattice *lattice, const char *name, const struct fit_options *options, uint8_t **record,
-                         size_t *record_bytes, bp_error *error);
+bp_status record_carried(const struct lattice *lattice, const struct carried *carried, const char *name, const struct fit_options *options,
+                         uint8_t **record, size_t *record_bytes, bp_error *error);
 
 #endif

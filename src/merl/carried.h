@@ -18,6 +18,12 @@
 
 enum { CARRIED_BYTES_MAX = 1 << 24 };
 
+/* What a file carried: bytes from malloc, which the owner frees; NULL: nothing. */
+struct carried {
+	uint8_t *bytes;
+	size_t count;
+};
+
 /* Whether `values` cells' values, three to a cell, can carry so many bytes. */
 bool carried_fits(size_t bytes, size_t values);
 

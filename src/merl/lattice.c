@@ -75,7 +75,6 @@ void lattice_free(struct lattice *lattice)
 	if (!lattice)
 		return;
 	free(lattice->block);
-	free(lattice->carried);
 	memset(lattice, 0, sizeof *lattice);
 }
 

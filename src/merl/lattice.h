@@ -51,8 +51,6 @@ struct lattice {
 	size_t valid_count;
 	size_t nonfinite_count; /* cells that were refused because a channel was NaN or infinite */
 	void *block;         /* the one allocation behind the planes, each aligned to 64 bytes */
-	uint8_t *carried;    /* what the file carries in its cells below the horizon (carried.h), from malloc; NULL: nothing */
-	size_t carried_bytes;
 };
 
 bool lattice_dims_legal(struct lattice_dims dims);

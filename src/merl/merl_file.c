@@ -11,7 +11,6 @@
 
 #include "error.h"
 #include "output_file.h"
-#include "carried.h"
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "MERL files are little-endian; a big-endian machine needs a swap here");
 
@@ -26,8 +25,7 @@ uint64_t merl_file_bytes(struct lattice_dims dims)
 struct input {
 	merl_read_fn *read;
 	void *user;
-	merl_seen_fn *seen;
-	void *seen_user;
+	struct merl_reading how;
 	uint64_t done;
 };
 
@@ -45,8 +43,8 @@ static bp_status input_fill(struct input *in, void *bytes, size_t count, size_t 
 			break;
 		filled += once;
 	}
-	if (in->seen && filled)
-		in->seen(in->seen_user, bytes, filled);
+	if (in->how.seen && filled)
+		in->how.seen(in->how.seen_user, bytes, filled);
 	in->done += filled;
 	*got = filled;
 	return BP_OK;
@@ -57,7 +55,7 @@ static bp_status truncated(uint64_t expected, uint64_t found, bp_error *error)
 	return error_set(error, BP_ERROR_BAD_INPUT, found, "truncated: expected %" PRIu64 " bytes, found %" PRIu64, expected, found);
 }
 
-static bp_status header_read(struct input *in, bool any_dims, struct lattice_dims *dims, bp_error *error)
+static bp_status header_read(struct input *in, struct lattice_dims *dims, bp_error *error)
 {
 	int32_t extent[3];
 	size_t got;
@@ -70,13 +68,13 @@ static bp_status header_read(struct input *in, bool any_dims, struct lattice_dim
 		return truncated(merl_file_bytes(LATTICE_MERL), got, error);
 	*dims = (struct lattice_dims){(uint32_t)extent[0], (uint32_t)extent[1], (uint32_t)extent[2]}; /* a negative one is too large */
 	const bool merl = extent[0] == 90 && extent[1] == 90 && extent[2] == 180;
-	if (merl || (any_dims && lattice_dims_legal(*dims)))
+	if (merl || (in->how.any_dims && lattice_dims_legal(*dims)))
 		return BP_OK;
 	return error_set(error, BP_ERROR_BAD_INPUT, 0, "not a MERL file: expected the header 90 90 180%s, found %" PRId32 " %" PRId32 " %" PRId32,
-	                 any_dims ? " (or other legal extents)" : "", extent[0], extent[1], extent[2]);
+	                 in->how.any_dims ? " (or other legal extents)" : "", extent[0], extent[1], extent[2]);
 }
 
-/* After the header: the planes, to the end of the stream, and what is carried in them. */
+/* After the header: the planes, to the end of the stream; what is carried in them, if that is asked for. */
 static bp_status planes_read(struct input *in, struct lattice *lattice, struct carried_reader *carried, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims);
@@ -92,7 +90,7 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, struct c
 				return status;
 			if (got < count * sizeof *values)
 				return truncated(expected, in->done, error);
-			if (!carried_find(carried, values, count))
+			if (in->how.carried && !carried_find(carried, values, count))
 				return error_memory(error, carried->count);
 			lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start);
 		}
@@ -108,13 +106,18 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, struct c
 	return BP_OK;
 }
 
+static struct input input_over(merl_read_fn *read, void *user, const struct merl_reading *reading)
+{
+	return (struct input){.read = read, .user = user, .how = reading ? *reading : (struct merl_reading){0}};
+}
+
 /* `available`: the bytes that are there, where that is known; a size that cannot be right is told before 35 MB are read in vain. */
-static bp_status input_read(struct input *in, bool any_dims, uint64_t available, struct lattice *out, bp_error *error)
+static bp_status input_read(struct input *in, uint64_t available, struct lattice *out, bp_error *error)
 {
 	struct carried_reader carried = {0};
 	struct lattice lattice = {0};
 	struct lattice_dims dims;
-	bp_status status = header_read(in, any_dims, &dims, error);
+	bp_status status = header_read(in, &dims, error);
 	if (status != BP_OK)
 		return status;
 	const uint64_t expected = merl_file_bytes(dims);
@@ -136,17 +139,16 @@ static bp_status input_read(struct input *in, bool any_dims, uint64_t available,
 		lattice_free(&lattice);
 		return status;
 	}
-	lattice.carried = carried.bytes;
-	lattice.carried_bytes = carried.bytes ? carried.count : 0;
+	if (in->how.carried)
+		*in->how.carried = (struct carried){.bytes = carried.bytes, .count = carried.bytes ? carried.count : 0};
 	*out = lattice;
 	return BP_OK;
 }
 
-bp_status lattice_read(merl_read_fn *read, void *user, merl_seen_fn *seen, void *seen_user, bool any_dims,
-                       struct lattice *out, bp_error *error)
+bp_status lattice_read(merl_read_fn *read, void *user, const struct merl_reading *reading, struct lattice *out, bp_error *error)
 {
-	struct input in = {.read = read, .user = user, .seen = seen, .seen_user = seen_user};
-	return input_read(&in, any_dims, UINT64_MAX, out, error);
+	struct input in = input_over(read, user, reading);
+	return input_read(&in, UINT64_MAX, out, error);
 }
 
 /* merl_read_fn over a file descriptor */
@@ -164,8 +166,7 @@ static bp_status descriptor_read(void *user, void *bytes, size_t capacity, size_
 	}
 }
 
-bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_user, bool any_dims, struct lattice *out,
-                            bp_error *error)
+bp_status lattice_read_path(const char *path, const struct merl_reading *reading, struct lattice *out, bp_error *error)
 {
 	bp_status status;
 	struct stat about;
@@ -179,8 +180,8 @@ bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_use
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
 		goto out;
 	}
-	struct input in = {.read = descriptor_read, .user = &fd, .seen = seen, .seen_user = seen_user};
-	status = input_read(&in, any_dims, (uint64_t)about.st_size, out, error);
+	struct input in = input_over(descriptor_read, &fd, reading);
+	status = input_read(&in, (uint64_t)about.st_size, out, error);
 out:
 	if (fd >= 0)
 		close(fd);

@@ -5,6 +5,7 @@
 #ifndef MERL_MERL_FILE_H
 #define MERL_MERL_FILE_H
 
+#include "carried.h"
 #include "lattice.h"
 
 /* Bytes of a file with these extents: 12 + 24 * cells. MERL: 34,992,012. */
@@ -12,23 +13,28 @@ uint64_t merl_file_bytes(struct lattice_dims dims);
 
 /* Delivers up to `capacity` bytes; *read = 0 at the end. Returns a status. */
 typedef bp_status merl_read_fn(void *user, void *bytes, size_t capacity, size_t *read, bp_error *error);
-/* Is shown every byte of the file, in order (for a checksum). May be NULL. */
+/* Is shown every byte of the file, in order (for a checksum). */
 typedef void merl_seen_fn(void *user, const void *bytes, size_t count);
+
+/* How a file is read; a zeroed struct, or NULL in its place, is a plain reading of MERL's own extents. */
+struct merl_reading {
+	merl_seen_fn *seen; /* NULL: nobody looks on */
+	void *seen_user;
+	bool any_dims;           /* accept any legal extents */
+	struct carried *carried; /* NULL, or where to put what the file carries (carried.h), unchecked; set on success, the caller frees its bytes */
+};
 
 /*
  * Reads one MERL file from a stream to its end. Refuses (BP_ERROR_BAD_INPUT, with expected and found):
  * a header other than `90 90 180` (any legal extents when any_dims), a short stream, trailing bytes,
- * no valid cell at all. The error's offset is where the file ends or should. On success the caller owns *out,
- * and what the file carries (carried.h) is in it, unchecked.
+ * no valid cell at all. The error's offset is where the file ends or should. On success the caller owns *out.
  */
-bp_status lattice_read(merl_read_fn *read, void *user, merl_seen_fn *seen, void *seen_user, bool any_dims,
-                       struct lattice *out, bp_error *error);
+bp_status lattice_read(merl_read_fn *read, void *user, const struct merl_reading *reading, struct lattice *out, bp_error *error);
 /*
  * The same for a regular file of the file system; a FIFO, a device or a folder is refused without
  * waiting. Messages do not repeat the path: the caller puts it in front.
  */
-bp_status lattice_read_path(const char *path, merl_seen_fn *seen, void *seen_user, bool any_dims, struct lattice *out,
-                            bp_error *error);
+bp_status lattice_read_path(const char *path, const struct merl_reading *reading, struct lattice *out, bp_error *error);
 
 /*
  * Writes a decoded table as a MERL file: unit * value / MERL_SCALE (DBL_MAX where that would overflow), but -1 where

@@ -337,15 +337,15 @@ void source_cursor_close(struct source_cursor *cursor)
 {
 	container_close(cursor->container);
 	free(cursor->path);
-	*cursor = (struct source_cursor){.any_dims = cursor->any_dims};
+	*cursor = (struct source_cursor){0};
 }
 
-bp_status source_item_read(const struct source_item *item, struct source_cursor *cursor, merl_seen_fn *seen, void *seen_user,
+bp_status source_item_read(const struct source_item *item, struct source_cursor *cursor, const struct merl_reading *reading,
                            struct lattice *out, bp_error *error)
 {
 	bp_status status;
 	if (!item->member)
-		return lattice_read_path(item->path, seen, seen_user, cursor->any_dims, out, error);
+		return lattice_read_path(item->path, reading, out, error);
 	if (!cursor->container || strcmp(cursor->path, item->path) != 0 || !container_ahead(cursor->container, item->ordinal)) {
 		source_cursor_close(cursor);
 		status = container_open(item->path, CONTAINER_INDEXED, &cursor->container, error);
@@ -360,5 +360,5 @@ bp_status source_item_read(const struct source_item *item, struct source_cursor 
 	status = container_seek(cursor->container, item->ordinal, error);
 	if (status != BP_OK)
 		return status;
-	return lattice_read(container_read, cursor->container, seen, seen_user, cursor->any_dims, out, error);
+	return lattice_read(container_read, cursor->container, reading, out, error);
 }

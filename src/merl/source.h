@@ -80,9 +80,8 @@ void source_item_clear(struct source_item *item);
 struct source_cursor {
 	struct container *container;
 	char *path;
-	bool any_dims; /* the caller's choice: accept tables of any legal extents, not only MERL's */
 };
-bp_status source_item_read(const struct source_item *item, struct source_cursor *cursor, merl_seen_fn *seen, void *seen_user,
+bp_status source_item_read(const struct source_item *item, struct source_cursor *cursor, const struct merl_reading *reading,
                            struct lattice *out, bp_error *error);
 void source_cursor_close(struct source_cursor *cursor);
 

@@ -39,7 +39,7 @@ static int measured_load(struct material *material, const char *name)
 {
 	char stem[SOURCE_STEM_BYTES];
 	bp_error error;
-	if (lattice_read_path(material->path, NULL, NULL, true, &material->lattice, &error)) {
+	if (lattice_read_path(material->path, &(struct merl_reading){.any_dims = true}, &material->lattice, &error)) {
 		report_error(material->path, NULL, &error);
 		return EXIT_FAILED;
 	}

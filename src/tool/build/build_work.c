@@ -58,8 +58,8 @@ static void checksum_add(void *user, const void *bytes, size_t count)
 }
 
 /* The material's record: from the older archive, from the file itself, or, as nearly always, by fitting. */
-static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice, struct delivery *delivery,
-                            uint8_t **record, size_t *record_bytes, bp_error *error)
+static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice, const struct carried *carried,
+                            struct delivery *delivery, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	const struct fit_options *options = &build->options->fit;
 	bp_status status = BP_OK;
@@ -70,7 +70,7 @@ static bp_status record_get(const struct build *build, const char *name, const s
 	if (status || *record)
 		return status;
 	delivery->origin = RECORD_KEPT;
-	status = record_carried(lattice, name, options, record, record_bytes, error);
+	status = record_carried(lattice, carried, name, options, record, record_bytes, error);
 	if (status || *record)
 		return status;
 	delivery->origin = RECORD_FITTED;
@@ -101,24 +101,27 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 	uint8_t *record = NULL;
 	size_t record_bytes = 0;
 	struct lattice lattice = {0};
+	struct carried carried = {0};
 	struct sha256 sha;
+	const struct merl_reading reading = {
+		.seen = checksum_add, .seen_user = &sha, .any_dims = build->options->any_lattice, .carried = &carried};
 	bp_status status;
 
 	test_hooks(job);
-	cursor.any_dims = build->options->any_lattice;
 	stage_enter(STAGE_READ);
 	sha256_start(&sha);
 	if (fd >= 0)
-		status = lattice_read(slot_read, &slot, checksum_add, &sha, build->options->any_lattice, &lattice, error);
+		status = lattice_read(slot_read, &slot, &reading, &lattice, error);
 	else
-		status = source_item_read(&build->sources.items[job->number], &cursor, checksum_add, &sha, &lattice, error);
+		status = source_item_read(&build->sources.items[job->number], &cursor, &reading, &lattice, error);
 	if (status)
 		return status;
 	delivery.source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
 	delivery.source.nonfinite_count = lattice.nonfinite_count;
 	sha256_finish(&sha, delivery.source.sha256);
 	stage_enter(STAGE_REST);
-	status = record_get(build, job->name, &lattice, &delivery, &record, &record_bytes, error);
+	status = record_get(build, job->name, &lattice, &carried, &delivery, &record, &record_bytes, error);
 	lattice_free(&lattice);
+	free(carried.bytes);
 	return status ? status : delivery_make(&delivery, record, record_bytes, out, out_bytes, error);
 }

@@ -299,7 +299,6 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	if (!selection_open(&compare.selection, compare.archive_path, argv + optind + 2, argc - optind - 2))
 		return EXIT_FAILED;
 	compare.job = (struct compare_job){.archive = compare.selection.archive, .images = compare.images != NULL,
-	                                   .cursor.any_dims = true,
 	                                   .plans = {.lightings = compare.report.lightings, .size = (uint32_t)size}};
 	int code = EXIT_FAILED;
 	if (compare.selection.count > 0) {

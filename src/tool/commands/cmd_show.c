@@ -59,7 +59,7 @@ static bp_status reference_read(const char *path, const char *name, struct latti
 	bp_error reason;
 	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && asprintf(&file, "%s/%s.binary", path, name) < 0)
 		return error_memory(error, 512);
-	bp_status result = lattice_read_path(file ? file : path, NULL, NULL, true, out, &reason);
+	bp_status result = lattice_read_path(file ? file : path, &(struct merl_reading){.any_dims = true}, out, &reason);
 	if (result != BP_OK)
 		error_set(error, result, reason.offset, "%s: %s", file ? file : path, reason.message);
 	free(file);
