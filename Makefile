@@ -70,6 +70,7 @@ help:
 	@echo "  stress       hundreds of adversarial materials: one table of what holds (a few minutes)"
 	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
+	@echo "  pinned       bytes, errors and values of the demo materials against tests/pinned.tsv"
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man pages"
 	@echo "  uninstall    removes what install wrote"
@@ -193,6 +194,11 @@ fuzz-build:
 fuzz: fuzz-build
 	$(Q)tests/fuzz.sh $(FUZZ_BUILD) $(FUZZ_SECONDS)
 
+# Bytes, errors and decoded values of the demo materials against tests/pinned.tsv; PINNED_FLAGS=--write pins them anew.
+PINNED_FLAGS ?=
+pinned: $(BUILD)/tests/pinned
+	$(Q)$(BUILD)/tests/pinned $(PINNED_FLAGS) tests/pinned.tsv
+
 # Run time against error: `make bench BENCH_DATA=FOLDER BENCH_LABEL="what it is"`; without BENCH_DATA the demo set.
 BENCH_OUT    ?= $(BUILD)/bench
 BENCH_LABEL  ?= $(if $(BENCH_DATA),MERL files in $(BENCH_DATA),demo set of brdfpack synth)
@@ -259,5 +265,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults faults-build fuzz fuzz-build install uninstall clean FORCE
+.PHONY: all help tests pinned check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults faults-build fuzz fuzz-build install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -3,6 +3,7 @@
 #
 #     scripts/test.sh [JOB]...
 #
+#     house     the plan of src: which wing may include which, and that the map is true
 #     unit      unit tests, built by gcc with warnings as errors
 #     cli       command-line tests (tests/cli)
 #     install   installs into a scratch folder; symbols; a consumer built through pkg-config
@@ -10,6 +11,7 @@
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
 #     clang     builds everything by clang with warnings as errors
 #     valgrind  a small build, list, extract and verify under valgrind
+#     pinned    bytes, errors and decoded values of the demo materials against tests/pinned.tsv
 #     stress    adversarial materials through every profile (the short form of `make stress`)
 #     faults    damaged archives, killed and starved builds, threads (the short form of `make faults`)
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
@@ -21,7 +23,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
-all_jobs="asan faults fuzz python stress unit cli bench install valgrind clang"
+all_jobs="asan faults fuzz python stress unit pinned cli bench install valgrind clang house"
 logs=build/logs
 passed=0
 failed=0
@@ -147,6 +149,8 @@ job_python() {
 job_valgrind() { build test && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }
 job_stress() { build test && check "stress" "$logs/stress.log" make -s "${test_build[@]}" STRESS_FLAGS="-g 2 -q -v" stress; }
 job_faults() { build test && check "faults" "$logs/faults.log" make -s "${test_build[@]}" faults; }
+job_house() { check "the plan of src" "$logs/house.log" tests/house.py; }
+job_pinned() { build pinned && check "pinned" "$logs/pinned.log" make -s "${test_build[@]}" pinned; }
 job_bench() {
 	build test || return
 	build bench && check "benchmarks" "$logs/bench.log" tests/bench.sh build/test
@@ -156,8 +160,9 @@ job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECON
 test_flags=(CFLAGS="-O3 -g -Werror")
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
-if wanted unit cli install python valgrind stress faults bench; then prepare test "${test_build[@]}" all tests; fi
+if wanted unit cli install python valgrind stress faults pinned bench; then prepare test "${test_build[@]}" all tests; fi
 if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
+if wanted pinned; then prepare pinned "${test_build[@]}" build/test/tests/pinned; fi
 if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi
 # no -Werror: what the sanitizers insert makes gcc warn of things that are not there
 if wanted asan; then prepare asan BUILD=build/asan CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow all tests; fi

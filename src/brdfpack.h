@@ -111,10 +111,14 @@ typedef struct bp_section {
 	double error;                  /* its own error figure, or NaN */
 } bp_section;
 
-/* Robust regression of one channel on the achromatic model: measured = diffuse + specular * model. */
+/*
+ * Robust regression (DuMouchel and O'Brien 1989) of one channel's measured values, diffuse + specular x. Profile 1: x is the
+ * decoded model, over all measured cells, and decoding uses both numbers. Profile 2: x is the measured mean of the three
+ * channels, over some 65,000 cells: a summary, which decoding does not use.
+ */
 typedef struct bp_channel {
 	double diffuse;      /* 1/sr */
-	double specular;     /* a ratio: the model is in 1/sr */
+	double specular;     /* a ratio: x is in 1/sr */
 	double rejected;     /* share of the valid cells that the regression gave no weight */
 	uint32_t iterations;
 	uint32_t converged;  /* 1 or 0 */

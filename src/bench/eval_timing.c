@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "merl/merl_file.h"
-#include "model/table/direction.h"
+#include "model/table/table.h"
 #include "rivals.h"
 #include "timing.h"
 

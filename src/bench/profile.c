@@ -110,29 +110,22 @@ static void profile_evaluate(const void *opaque, const double wi[3], const doubl
 		rgb[c] = (double)value[c];
 }
 
+/* What both profiles have in common. */
+#define PROFILE_BASELINE                                                                                                              \
+	.budgeted = true, .bytes = profile_bytes, .parameters = profile_parameters, .expand = profile_expand, .prepare = profile_prepare, \
+	.evaluate = profile_evaluate, .free_state = profile_free
+
 const struct baseline BASELINE_PAPER = {
 	.name = "paper",
 	.reference = "this project, --profile paper: Bilgili et al. 2012, pair copulas and wavelets",
-	.budgeted = true,
 	.fit = paper_fit,
-	.bytes = profile_bytes,
-	.parameters = profile_parameters,
-	.expand = profile_expand,
-	.prepare = profile_prepare,
-	.evaluate = profile_evaluate,
-	.free_state = profile_free,
+	PROFILE_BASELINE,
 };
 
 const struct baseline BASELINE_SPECTRAL = {
 	.name = "spectral",
 	.reference = "this project, the spectral profile",
-	.budgeted = true,
 	.fit = spectral_fit,
 	.fit_effort = spectral_fit_effort,
-	.bytes = profile_bytes,
-	.parameters = profile_parameters,
-	.expand = profile_expand,
-	.prepare = profile_prepare,
-	.evaluate = profile_evaluate,
-	.free_state = profile_free,
+	PROFILE_BASELINE,
 };

@@ -7,7 +7,7 @@
 #ifndef CODEC_SPECTRAL_BANDS_H
 #define CODEC_SPECTRAL_BANDS_H
 
-#include "model/spectral/spectrum.h"
+#include "model/spectral/spectral.h"
 
 enum { BANDS_MAX = 3 * SPECTRUM_LEVELS_MAX + 1, BLOCK_EDGE = 8 };
 

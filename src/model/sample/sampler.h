@@ -4,7 +4,7 @@
 #ifndef MODEL_SAMPLE_SAMPLER_H
 #define MODEL_SAMPLE_SAMPLER_H
 
-#include "model/table/direction.h"
+#include "model/table/table.h"
 #include "horizon_s.h"
 #include "sample.h"
 

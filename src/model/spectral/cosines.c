@@ -6,7 +6,7 @@
 
 #include "error.h"
 #include "spectral_kernels.h"
-#include "spectrum.h"
+#include "merl/lattice.h"
 
 enum { WIDTH = 16, SMALL = 8 }; /* rows at once; from here on a product is as good */
 
@@ -26,6 +26,20 @@ struct cosines {
 	float *in, *out, *scratch, *rest; /* [n][WIDTH], the last [WIDTH][n] */
 };
 
+/* From the first quadrant only, so that equal angles give equal values. */
+double cosines_exact(uint64_t a, uint32_t p)
+{
+	double c, s;
+	a %= 4 * (uint64_t)p;
+	if (a > 2 * (uint64_t)p)
+		a = 4 * (uint64_t)p - a;
+	const int negative = a > p;
+	if (negative)
+		a = 2 * (uint64_t)p - a;
+	quarter_cos_sin((double)a / p, &c, &s);
+	return negative ? -c : c;
+}
+
 static void node_free(struct node *node)
 {
 	if (!node)
@@ -44,7 +58,7 @@ static float *second_table(uint32_t n, uint32_t parity, float scale)
 	float *table = malloc((size_t)(count ? count * count : 1) * sizeof *table);
 	for (uint32_t m = 0; m < count && table; m++)
 		for (uint32_t k = 0; k < count; k++)
-			table[m * count + k] = (float)((double)scale * spectrum_cosine((uint64_t)(2 * m + parity) * (2 * k + 1), n));
+			table[m * count + k] = (float)((double)scale * cosines_exact((uint64_t)(2 * m + parity) * (2 * k + 1), n));
 	return table;
 }
 
@@ -53,7 +67,7 @@ static float *fourth_table(uint32_t n, float scale)
 	float *table = malloc((size_t)n * n * sizeof *table);
 	for (uint32_t m = 0; m < n && table; m++)
 		for (uint32_t k = 0; k < n; k++)
-			table[m * n + k] = (float)((double)scale * spectrum_cosine((uint64_t)(2 * m + 1) * (2 * k + 1), 2 * n));
+			table[m * n + k] = (float)((double)scale * cosines_exact((uint64_t)(2 * m + 1) * (2 * k + 1), 2 * n));
 	return table;
 }
 
@@ -61,8 +75,8 @@ static float *angles(uint32_t n)
 {
 	float *angle = malloc(n * sizeof *angle);
 	for (uint32_t k = 0; k < n / 2 && angle; k++) {
-		angle[k] = (float)spectrum_cosine(2 * k + 1, 2 * n);
-		angle[n / 2 + k] = (float)spectrum_cosine(2 * n - (2 * k + 1), 2 * n);
+		angle[k] = (float)cosines_exact(2 * k + 1, 2 * n);
+		angle[n / 2 + k] = (float)cosines_exact(2 * n - (2 * k + 1), 2 * n);
 	}
 	return angle;
 }

@@ -17,6 +17,9 @@
 
 #include "brdfpack.h"
 
+/* cos(pi a / (2 P)), exact where it is 0, 1 or -1, and the same on every machine. */
+double cosines_exact(uint64_t a, uint32_t p);
+
 struct cosines; /* tables and scratch; one thread at a time */
 
 bp_status cosines_create(uint32_t n, struct cosines **out, bp_error *error);

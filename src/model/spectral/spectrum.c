@@ -23,20 +23,6 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
 	return levels;
 }
 
-/* From the first quadrant only, so that equal angles give equal values. */
-double spectrum_cosine(uint64_t a, uint32_t p)
-{
-	double c, s;
-	a %= 4 * (uint64_t)p;
-	if (a > 2 * (uint64_t)p)
-		a = 4 * (uint64_t)p - a;
-	const int negative = a > p;
-	if (negative)
-		a = 2 * (uint64_t)p - a;
-	quarter_cos_sin((double)a / p, &c, &s);
-	return negative ? -c : c;
-}
-
 bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_error *error)
 {
 	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d;

@@ -22,9 +22,6 @@
 enum { SPECTRUM_LEVELS_MAX = 7 };
 #define SPECTRUM_GAIN 1.149604398860241f /* K of the 9/7 wavelet */
 
-/* cos(pi a / (2 P)), exact where it is 0, 1 or -1, and the same on every machine. */
-double spectrum_cosine(uint64_t a, uint32_t p);
-
 struct spectrum; /* tables and scratch for tables of one size; one thread at a time */
 
 bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_error *error);

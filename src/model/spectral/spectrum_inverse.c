@@ -1,3 +1,4 @@
+#include "cosines.h"
 #include "spectrum_inverse.h"
 
 #include <math.h>
@@ -57,7 +58,7 @@ bp_status spectrum_inverse_create(struct lattice_dims d, struct spectrum_inverse
 	places_fill(t);
 	const double scale = sqrt(2.0 / d.phi_d);
 	for (uint32_t a = 0; a < 4 * d.phi_d; a++)
-		t->cosine[a] = (float)(scale * spectrum_cosine(a, d.phi_d));
+		t->cosine[a] = (float)(scale * cosines_exact(a, d.phi_d));
 	*out = t;
 	return BP_OK;
 }

@@ -21,6 +21,7 @@
 
 #include "merl/lattice.h"
 #include "model/model.h"
+#include "direction.h"
 
 /* A table's largest value, in 1/sr, is cut to this: a float holds it with room to spare. */
 #define TABLE_LARGEST 1e34
