@@ -83,48 +83,98 @@ bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index
 /* One input's place in the walk through all names. */
 struct input {
 	const struct bp_archive *archive;
-	uint64_t next, count; /* materials: entry is number next - 1, when it is `there` */
+	size_t number;
+	uint64_t next, count; /* materials: entry is number next - 1 */
 	struct index_page leaf;
 	struct index_entry entry;
-	bool there;
 };
 
-static bp_status input_advance(struct input *input, bp_error *error)
+/* The inputs that have a name left, as a heap: the first name at the top; of the same names, the first input's. */
+struct walk {
+	struct input **heap;
+	size_t count;
+};
+
+static bool input_before(const struct input *a, const struct input *b)
 {
-	input->there = input->next < input->count;
-	return input->there ? archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error) : BP_OK;
+	const int order = strcmp(a->entry.name, b->entry.name);
+	return order < 0 || (order == 0 && a->number < b->number);
+}
+
+static void walk_sink(struct walk *walk, size_t at)
+{
+	for (;;) {
+		size_t first = at;
+		for (size_t child = 2 * at + 1; child <= 2 * at + 2 && child < walk->count; child++)
+			if (input_before(walk->heap[child], walk->heap[first]))
+				first = child;
+		if (first == at)
+			return;
+		struct input *const swap = walk->heap[at];
+		walk->heap[at] = walk->heap[first];
+		walk->heap[first] = swap;
+		at = first;
+	}
+}
+
+/* The input at the top goes on to its next name, or leaves the heap. */
+static bp_status walk_advance(struct walk *walk, bp_error *error)
+{
+	struct input *input = walk->heap[0];
+	bp_status status = BP_OK;
+	if (input->next < input->count)
+		status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
+	else
+		walk->heap[0] = walk->heap[--walk->count];
+	if (!status)
+		walk_sink(walk, 0);
+	return status;
 }
 
 /* Copies the first name of all; where several have it, the last of them. */
-static bp_status first_copy(struct input *inputs, size_t count, size_t chosen, const struct copy_options *options,
-                            struct archive_writer *writer, struct copy_totals *totals, size_t *failed, bp_error *error)
+static bp_status first_copy(struct walk *walk, const struct copy_options *options, struct archive_writer *writer,
+                            struct copy_totals *totals, size_t *failed, bp_error *error)
 {
-	char name[RECORD_NAME_BYTES_MAX + 1];
-	size_t last = chosen;
-	bp_status status = BP_OK;
+	struct index_entry entry = walk->heap[0]->entry;
+	const struct input *last = walk->heap[0];
 
-	strcpy(name, inputs[chosen].entry.name);
-	for (size_t n = chosen + 1; n < count; n++) {
-		if (!inputs[n].there || strcmp(inputs[n].entry.name, name) != 0)
-			continue;
-		if (!options->replace) {
-			*failed = n;
-			totals->reading = true;
-			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: also in %s; with --replace the later one is taken", name,
-			                 archive_path(inputs[last].archive));
-		}
+	*failed = last->number;
+	totals->reading = true;
+	bp_status status = walk_advance(walk, error);
+	while (!status && walk->count && !strcmp(walk->heap[0]->entry.name, entry.name)) {
+		const struct bp_archive *const before = last->archive;
+		last = walk->heap[0];
+		*failed = last->number;
+		if (!options->replace)
+			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: also in %s; with --replace the later one is taken", entry.name,
+			                 archive_path(before));
+		entry = last->entry;
 		totals->replaced++;
-		last = n;
+		status = walk_advance(walk, error);
 	}
-	*failed = last;
-	status = record_copy(inputs[last].archive, &inputs[last].entry, options, writer, totals, error);
-	for (size_t n = chosen; n < count && !status; n++)
-		if (inputs[n].there && !strcmp(inputs[n].entry.name, name)) {
-			*failed = n;
-			status = input_advance(&inputs[n], error);
-			totals->reading = status != BP_OK;
-		}
-	return status;
+	return status ? status : record_copy(last->archive, &entry, options, writer, totals, error);
+}
+
+/* Every input at its first name. */
+static bp_status walk_start(const struct bp_archive *const *archives, size_t count, struct input *inputs, struct walk *walk, size_t *failed,
+                            bp_error *error)
+{
+	for (size_t n = 0; n < count; n++) {
+		struct input *input = &inputs[n];
+		input->archive = archives[n];
+		input->number = n;
+		input->count = bp_archive_count(archives[n]);
+		if (input->count == 0)
+			continue;
+		*failed = n;
+		bp_status status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
+		if (status)
+			return status;
+		walk->heap[walk->count++] = input;
+	}
+	for (size_t n = walk->count / 2; n-- > 0;)
+		walk_sink(walk, n);
+	return BP_OK;
 }
 
 bp_status archive_merge(const struct bp_archive *const *archives, size_t count, const struct copy_options *options,
@@ -132,32 +182,24 @@ bp_status archive_merge(const struct bp_archive *const *archives, size_t count, 
 {
 	struct archive_writer *writer = NULL;
 	struct input *inputs = calloc(count ? count : 1, sizeof *inputs);
+	struct walk walk = {.heap = calloc(count ? count : 1, sizeof *walk.heap)};
 	bp_status status = BP_OK;
 
 	*totals = (struct copy_totals){0};
 	*failed = 0;
-	if (!inputs)
-		return error_memory(error, count * sizeof *inputs);
-	for (size_t n = 0; n < count && !status; n++) {
-		inputs[n].archive = archives[n];
-		inputs[n].count = bp_archive_count(archives[n]);
-		*failed = n;
-		status = input_advance(&inputs[n], error);
+	if (!inputs || !walk.heap)
+		status = error_memory(error, count * sizeof *inputs);
+	if (!status) {
+		status = walk_start(archives, count, inputs, &walk, failed, error);
 		totals->reading = status != BP_OK;
 	}
 	if (!status)
 		status = archive_writer_open(options->output, &writer, error);
-	while (!status && !stop_asked(options, totals)) {
-		size_t first = count;
-		for (size_t n = 0; n < count; n++)
-			if (inputs[n].there && (first == count || strcmp(inputs[n].entry.name, inputs[first].entry.name) < 0))
-				first = n;
-		if (first == count)
-			break;
-		status = first_copy(inputs, count, first, options, writer, totals, failed, error);
-	}
+	while (!status && walk.count && !stop_asked(options, totals))
+		status = first_copy(&walk, options, writer, totals, failed, error);
 	if (writer)
 		status = writer_end(writer, status, totals, error);
+	free(walk.heap);
 	free(inputs);
 	return status;
 }
