@@ -15,15 +15,47 @@ static uint32_t layers_wanted(const struct record_head *head, double max_log_rms
 	return head->layer_count;
 }
 
+/* What all shards of one build have in common, from the first record seen. */
+struct likeness {
+	bool known;
+	char name[RECORD_NAME_BYTES_MAX + 1];
+	const struct bp_archive *archive;
+	enum profile profile;
+	uint32_t codec_version;
+	struct fit_options options;
+};
+
+static bp_status likeness_check(struct likeness *first, const struct bp_archive *archive, const struct record_head *head, bp_error *error)
+{
+	if (!first->known) {
+		*first = (struct likeness){.known = true, .archive = archive, .profile = head->profile, .codec_version = head->codec_version, .options = head->options};
+		strcpy(first->name, head->name);
+		return BP_OK;
+	}
+	const char *what = head->profile != first->profile                             ? "profile"
+	                   : head->codec_version != first->codec_version               ? "codec version"
+	                   : head->options.budget_bytes != first->options.budget_bytes ? "budget"
+	                   : head->options.max_error != first->options.max_error       ? "bound of the error"
+	                   : head->options.effort != first->options.effort             ? "effort"
+	                                                                               : NULL;
+	return !what ? BP_OK
+	             : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: made with another %s than %s in %s: these are not shards of one build; build "
+	                         "them with the same program and options", head->name, what, first->name, archive_path(first->archive));
+}
+
 static bp_status record_copy(const struct bp_archive *archive, const struct index_entry *entry, const struct copy_options *options,
-                             struct archive_writer *writer, struct copy_totals *totals, bp_error *error)
+                             struct likeness *likeness, struct archive_writer *writer, struct copy_totals *totals, bp_error *error)
 {
 	struct record_head head;
 	uint8_t *record = NULL, *kept = NULL;
 	totals->reading = true;
 	bp_status status = archive_entry_record(archive, entry, &head, &record, error);
-	if (status)
+	if (!status && options->alike)
+		status = likeness_check(likeness, archive, &head, error);
+	if (status) {
+		free(record);
 		return status;
+	}
 	const uint32_t layers = layers_wanted(&head, options->max_log_rmse);
 	size_t bytes = head.record_bytes;
 	if (layers < head.layer_count)
@@ -75,7 +107,7 @@ bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index
 		status = archive_entry(archive, index ? index[n] : n, &leaf, &entry, error);
 		totals->reading = status != BP_OK;
 		if (!status)
-			status = record_copy(archive, &entry, options, writer, totals, error);
+			status = record_copy(archive, &entry, options, NULL, writer, totals, error);
 	}
 	return writer_end(writer, status, totals, error);
 }
@@ -93,6 +125,7 @@ struct input {
 struct walk {
 	struct input **heap;
 	size_t count;
+	struct likeness likeness;
 };
 
 static bool input_before(const struct input *a, const struct input *b)
@@ -152,7 +185,7 @@ static bp_status first_copy(struct walk *walk, const struct copy_options *option
 		totals->replaced++;
 		status = walk_advance(walk, error);
 	}
-	return status ? status : record_copy(last->archive, &entry, options, writer, totals, error);
+	return status ? status : record_copy(last->archive, &entry, options, &walk->likeness, writer, totals, error);
 }
 
 /* Every input at its first name. */
