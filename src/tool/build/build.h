@@ -18,8 +18,15 @@ struct build_options {
 	unsigned workers;
 	bool strict, json, quiet;
 	bool update;      /* take records of unchanged sources from the archive that stands at `output` */
+	unsigned shard, shard_count; /* pack the shard-th (1..shard_count) part of the materials, chosen by their names; 0, 0: all */
 	bool any_lattice; /* accept MERL-like files of any legal extents */
 };
+
+/*
+ * Whether a material of this name belongs to the shard: CRC32(name) mod shard_count, counted from 1. Names alone decide, so the
+ * shards of any count are disjoint and together all there is.
+ */
+bool build_shard_has(const struct build_options *options, const char *name);
 
 /* Returns an exit code; everything has been said. */
 int build_run(const struct build_options *options);
