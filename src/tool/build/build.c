@@ -1,7 +1,6 @@
 #include "build.h"
 
 #include "archive/writer.h"
-#include "bytes.h"
 #include "error.h"
 #include "build_inputs.h"
 #include "build_work.h"
@@ -42,11 +41,6 @@ static void work(struct build *build)
 			return;
 		}
 	}
-}
-
-bool build_shard_has(const struct build_options *options, const char *name)
-{
-	return options->shard_count <= 1 || bytes_crc32((const uint8_t *)name, strlen(name)) % options->shard_count == options->shard - 1;
 }
 
 /* What the manifest lists and no input has; known when all streams have been read. */

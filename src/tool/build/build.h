@@ -22,12 +22,6 @@ struct build_options {
 	bool any_lattice; /* accept MERL-like files of any legal extents */
 };
 
-/*
- * Whether a material of this name belongs to the shard: CRC32(name) mod shard_count, counted from 1. Names alone decide, so the
- * shards of any count are disjoint and together all there is.
- */
-bool build_shard_has(const struct build_options *options, const char *name);
-
 /* Returns an exit code; everything has been said. */
 int build_run(const struct build_options *options);
 
