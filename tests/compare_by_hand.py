@@ -73,9 +73,10 @@ def coordinates(dims, normal, light):
     return math.sqrt(theta_h / (math.pi / 2)) * dims[0], theta_d / (math.pi / 2) * dims[1], phi_d / math.pi * dims[2]
 
 
-def corners(dims, at):
-    """Cells and weights of a trilinear look-up."""
+def neighbours(dims, at):
+    """Cells and weights of a trilinear look-up between the cells' centres."""
     found = []
+    at = max(at[0] - 0.5, 0), max(at[1] - 0.5, 0), (at[2] - 0.5) % dims[2]
     i, j, k = (int(x) for x in at)
     for di, dj, dk in [(a, b, c) for a in (0, 1) for b in (0, 1) for c in (0, 1)]:
         weight = 1.0
@@ -99,7 +100,7 @@ def spheres(dims, size, lights_at, tables):
                 cosine = dot(normal, light)
                 if cosine <= 1e-3:
                     continue
-                for cell, share in corners(dims, coordinates(dims, normal, light)):
+                for cell, share in neighbours(dims, coordinates(dims, normal, light)):
                     for total, table in zip(sums, tables):
                         for c in range(3):
                             total[c] += share * cosine * weight * table[c][cell]
