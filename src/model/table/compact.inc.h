@@ -275,11 +275,14 @@ static inline void KERNEL(compact_rgb_values)(const struct table *t, const struc
 	}
 }
 
-TABLE_VALUES(compact_mono_values, KERNEL(compact_mono_of_many), 1, 1)
-TABLE_FORMS(compact_rgb, KERNEL(cell_h_last), KERNEL(compact_rgb_one), KERNEL(compact_find_many), KERNEL(compact_rgb_values), 1, 1)
-TABLE_FORMS(compact_mono, KERNEL(cell_h_last), KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_values), 1, 1)
+static const struct KERNEL(form) KERNEL(compact_rgb_form) = {
+	KERNEL(cell_h_last), KERNEL(compact_rgb_one), KERNEL(compact_find_many), NULL, KERNEL(compact_rgb_values), 1, true};
+static const struct KERNEL(form) KERNEL(compact_mono_form) = {
+	KERNEL(cell_h_last), KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_of_many), NULL, 1, true};
+FORM_ENTRIES(compact_rgb_form)
+FORM_ENTRIES(compact_mono_form)
 
 const struct table_kernels KERNEL(table_compact)[2] = {
-	{KERNEL(compact_mono_evaluate), KERNEL(compact_mono_nearest), KERNEL(compact_mono_batch)},
-	{KERNEL(compact_rgb_evaluate), KERNEL(compact_rgb_nearest), KERNEL(compact_rgb_batch)},
+	{KERNEL(compact_mono_form_evaluate), KERNEL(compact_mono_form_nearest), KERNEL(compact_mono_form_batch)},
+	{KERNEL(compact_rgb_form_evaluate), KERNEL(compact_rgb_form_nearest), KERNEL(compact_rgb_form_batch)},
 };

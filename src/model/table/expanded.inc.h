@@ -99,12 +99,14 @@ static inline void KERNEL(expanded_mono_one)(const struct table *t, const struct
 	KERNEL(expanded_mono)(t, &l, rgb);
 }
 
-TABLE_VALUES(expanded_rgb_values, KERNEL(expanded_rgb), sizeof(uint16_t), 0)
-TABLE_VALUES(expanded_mono_values, KERNEL(expanded_mono), sizeof(uint16_t), 0)
-TABLE_FORMS(expanded_rgb, KERNEL(cell), KERNEL(expanded_rgb_one), KERNEL(expanded_find), KERNEL(expanded_rgb_values), sizeof(uint16_t), 0)
-TABLE_FORMS(expanded_mono, KERNEL(cell), KERNEL(expanded_mono_one), KERNEL(expanded_find), KERNEL(expanded_mono_values), sizeof(uint16_t), 0)
+static const struct KERNEL(form) KERNEL(expanded_rgb_form) = {
+	KERNEL(cell), KERNEL(expanded_rgb_one), KERNEL(expanded_find), KERNEL(expanded_rgb), NULL, sizeof(uint16_t), false};
+static const struct KERNEL(form) KERNEL(expanded_mono_form) = {
+	KERNEL(cell), KERNEL(expanded_mono_one), KERNEL(expanded_find), KERNEL(expanded_mono), NULL, sizeof(uint16_t), false};
+FORM_ENTRIES(expanded_rgb_form)
+FORM_ENTRIES(expanded_mono_form)
 
 const struct table_kernels KERNEL(table_expanded)[2] = {
-	{KERNEL(expanded_mono_evaluate), KERNEL(expanded_mono_nearest), KERNEL(expanded_mono_batch)},
-	{KERNEL(expanded_rgb_evaluate), KERNEL(expanded_rgb_nearest), KERNEL(expanded_rgb_batch)},
+	{KERNEL(expanded_mono_form_evaluate), KERNEL(expanded_mono_form_nearest), KERNEL(expanded_mono_form_batch)},
+	{KERNEL(expanded_rgb_form_evaluate), KERNEL(expanded_rgb_form_nearest), KERNEL(expanded_rgb_form_batch)},
 };

@@ -136,8 +136,8 @@ static inline struct cell KERNEL(cell_of)(struct lattice_dims dims, float shift,
 		.i = (uint32_t)(i - (i > 0)),
 		.j = (uint32_t)(j - (j > 0)),
 		.k = (uint32_t)(k > 0 ? k : (int32_t)dims.phi_d) - 1,
-		.has_h = (i > 0) & (i < (int32_t)dims.theta_h) ? UINT32_MAX : 0,
-		.has_d = (j > 0) & (j < (int32_t)dims.theta_d) ? UINT32_MAX : 0,
+		.has_h = ((i > 0) & (i < (int32_t)dims.theta_h)) ? UINT32_MAX : 0,
+		.has_d = ((j > 0) & (j < (int32_t)dims.theta_d)) ? UINT32_MAX : 0,
 		.h = h - (float)i,
 		.d = d - (float)j,
 		.p = p - (float)k,
@@ -160,88 +160,105 @@ __attribute__((always_inline)) static inline void KERNEL(fetch)(const struct tab
 	__builtin_prefetch(cell + step_h + step_d);
 }
 
-/* VALUES of one form (see below) by its VALUE. */
-#define TABLE_VALUES(name, VALUE, UNIT, COMPACT)                                                                             \
-	static inline void KERNEL(name)(const struct table *t, const struct lookups *l, const struct lookups *next,              \
-	                                float *restrict r, float *restrict g, float *restrict b)                                 \
-	{                                                                                                                        \
-		for (size_t m = 0; m < l->count; m++) {                                                                              \
-			KERNEL(fetch)(t, next, m, UNIT);                                                                                 \
-			struct lookup lookup = {.offset = l->offset[m], .step_h = l->step_h[m], .step_d = l->step_d[m],                  \
-			                        .h = l->h[m], .d = l->d[m], .p = l->p[m]};                                               \
-			if (COMPACT)                                                                                                     \
-				lookup.residual = l->residual[m];                                                                            \
-			float value[3];                                                                                                  \
-			VALUE(t, &lookup, value);                                                                                        \
-			r[m] = value[0];                                                                                                 \
-			g[m] = value[1];                                                                                                 \
-			b[m] = value[2];                                                                                                 \
-		}                                                                                                                    \
-	}
+/* What one memory form and number of channels is made of. Constant where it is used, so that the calls below become direct and inline. */
+struct KERNEL(form) {
+	struct cell_x4 (*cell)(const struct table *t, f32x4 squared, f32x4 at);
+	void (*one)(const struct table *t, const struct cell_x4 *at, float rgb[3]);
+	struct lookup (*find)(const struct table *t, struct cell cell);                           /* for a loop that vectorises */
+	void (*value)(const struct table *t, const struct lookup *l, float rgb[3]);               /* of one of many, to the same bits as `one` */
+	void (*values)(const struct table *t, const struct lookups *l, const struct lookups *next, float *restrict r, float *restrict g,
+	               float *restrict b);                                                        /* in place of `value`, where not NULL */
+	size_t unit;                                                                              /* bytes to which offsets count */
+	bool compact;                                                                             /* residual, share and place are in use */
+};
 
-/*
- * evaluate, nearest and batch of one form. CELL(table, squared, at) -> cell_x4; ONE(table, cell_x4, rgb); FIND_MANY(table, cell) -> lookup, for a loop;
- * VALUES(table, lookups, next, r, g, b), to the same bits; offsets in UNIT bytes; COMPACT is 1 or 0.
- */
-#define TABLE_FORMS(name, CELL, ONE, FIND_MANY, VALUES, UNIT, COMPACT)                                                       \
-	static void KERNEL(name##_evaluate)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])           \
-	{                                                                                                                        \
-		f32x4 squared, at;                                                                                                   \
-		if (direction_locate_squared(t->scale, wi, wo, &squared, &at)) {                                                     \
-			const struct cell_x4 cell = CELL(t, squared, at);                                                                \
-			ONE(t, &cell, rgb);                                                                                              \
-		} else {                                                                                                             \
-			rgb[0] = rgb[1] = rgb[2] = 0;                                                                                    \
-		}                                                                                                                    \
-	}                                                                                                                        \
-	static void KERNEL(name##_nearest)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])            \
-	{                                                                                                                        \
-		f32x4 squared, at;                                                                                                   \
-		if (direction_locate_squared(t->scale, wi, wo, &squared, &at)) {                                                     \
-			const struct cell_x4 cell = KERNEL(cell_nearest)(t, squared, at);                                                \
-			ONE(t, &cell, rgb);                                                                                              \
-		} else {                                                                                                             \
-			rgb[0] = rgb[1] = rgb[2] = 0;                                                                                    \
-		}                                                                                                                    \
-	}                                                                                                                        \
-	static void KERNEL(name##_locate)(const struct table *t, size_t count, const float *const wi[3],                         \
-	                                  const float *const wo[3], size_t first, struct lookups *restrict to)                   \
-	{                                                                                                                        \
-		const struct table copy = *t; /* known not to change while *to is written */                                         \
-		const float shift = t->shift[0];                                                                                     \
-		KERNEL(locate)(t, count, wi, wo, first, to);                                                                         \
-		for (size_t m = 0, n = to->count; m < n; m++) {                                                                      \
-			struct lookup l = FIND_MANY((&copy), KERNEL(cell_of)(copy.dims, shift, to->h[m], to->d[m], to->p[m]));           \
-			to->offset[m] = l.offset;                                                                                        \
-			to->step_h[m] = l.step_h;                                                                                        \
-			to->step_d[m] = l.step_d;                                                                                        \
-			to->h[m] = l.h;                                                                                                  \
-			to->d[m] = l.d;                                                                                                  \
-			to->p[m] = l.p;                                                                                                  \
-			if (COMPACT) {                                                                                                   \
-				to->residual[m] = l.residual;                                                                                \
-				to->share[m] = l.share;                                                                                      \
-				to->place[m] = l.place;                                                                                      \
-			}                                                                                                                \
-		}                                                                                                                    \
-	}                                                                                                                        \
-	static void KERNEL(name##_batch)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], \
-	                                 float *const rgb[3])                                                                    \
-	{                                                                                                                        \
-		struct lookups both[2];                                                                                              \
-		struct lookups *now = &both[0], *next = &both[1];                                                                    \
-		KERNEL(name##_locate)(t, count, wi, wo, 0, now);                                                                     \
-		for (size_t m = 0; m < now->count; m++)                                                                              \
-			KERNEL(fetch)(t, now, m, UNIT);                                                                                  \
-		for (size_t first = 0; now->count;) {                                                                                \
-			struct lookups *done = now;                                                                                      \
-			float *const r = rgb[0] + first, *const g = rgb[1] + first, *const b = rgb[2] + first;                           \
-			KERNEL(name##_locate)(t, count, wi, wo, first + now->count, next);                                               \
-			VALUES(t, now, next, r, g, b);                                                                                   \
-			for (size_t m = 0; m < now->count && !now->all_usable; m++)                                                      \
-				r[m] = now->usable[m] ? r[m] : 0, g[m] = now->usable[m] ? g[m] : 0, b[m] = now->usable[m] ? b[m] : 0;        \
-			first += now->count;                                                                                             \
-			now = next;                                                                                                      \
-			next = done;                                                                                                     \
-		}                                                                                                                    \
+#define FORM_FUNCTION static inline __attribute__((always_inline))
+
+FORM_FUNCTION void KERNEL(form_evaluate)(const struct KERNEL(form) form, bool nearest, const struct table *t, const float wi[3],
+                                         const float wo[3], float rgb[3])
+{
+	f32x4 squared, at;
+	if (direction_locate_squared(t->scale, wi, wo, &squared, &at)) {
+		const struct cell_x4 cell = nearest ? KERNEL(cell_nearest)(t, squared, at) : form.cell(t, squared, at);
+		form.one(t, &cell, rgb);
+	} else {
+		rgb[0] = rgb[1] = rgb[2] = 0;
+	}
+}
+
+FORM_FUNCTION void KERNEL(form_locate)(const struct KERNEL(form) form, const struct table *t, size_t count, const float *const wi[3],
+                                       const float *const wo[3], size_t first, struct lookups *restrict to)
+{
+	const struct table copy = *t; /* known not to change while *to is written */
+	const float shift = t->shift[0];
+	KERNEL(locate)(t, count, wi, wo, first, to);
+	for (size_t m = 0, n = to->count; m < n; m++) {
+		const struct lookup l = form.find(&copy, KERNEL(cell_of)(copy.dims, shift, to->h[m], to->d[m], to->p[m]));
+		to->offset[m] = l.offset;
+		to->step_h[m] = l.step_h;
+		to->step_d[m] = l.step_d;
+		to->h[m] = l.h;
+		to->d[m] = l.d;
+		to->p[m] = l.p;
+		if (form.compact) {
+			to->residual[m] = l.residual;
+			to->share[m] = l.share;
+			to->place[m] = l.place;
+		}
+	}
+}
+
+FORM_FUNCTION void KERNEL(form_values)(const struct KERNEL(form) form, const struct table *t, const struct lookups *l, const struct lookups *next,
+                                       float *restrict r, float *restrict g, float *restrict b)
+{
+	for (size_t m = 0; m < l->count; m++) {
+		KERNEL(fetch)(t, next, m, form.unit);
+		struct lookup lookup = {.offset = l->offset[m], .step_h = l->step_h[m], .step_d = l->step_d[m], .h = l->h[m], .d = l->d[m], .p = l->p[m]};
+		if (form.compact)
+			lookup.residual = l->residual[m];
+		float value[3];
+		form.value(t, &lookup, value);
+		r[m] = value[0];
+		g[m] = value[1];
+		b[m] = value[2];
+	}
+}
+
+FORM_FUNCTION void KERNEL(form_batch)(const struct KERNEL(form) form, const struct table *t, size_t count, const float *const wi[3],
+                                      const float *const wo[3], float *const rgb[3])
+{
+	struct lookups both[2];
+	struct lookups *now = &both[0], *next = &both[1];
+	KERNEL(form_locate)(form, t, count, wi, wo, 0, now);
+	for (size_t m = 0; m < now->count; m++)
+		KERNEL(fetch)(t, now, m, form.unit);
+	for (size_t first = 0; now->count;) {
+		struct lookups *done = now;
+		float *const r = rgb[0] + first, *const g = rgb[1] + first, *const b = rgb[2] + first;
+		KERNEL(form_locate)(form, t, count, wi, wo, first + now->count, next);
+		if (form.values)
+			form.values(t, now, next, r, g, b);
+		else
+			KERNEL(form_values)(form, t, now, next, r, g, b);
+		for (size_t m = 0; m < now->count && !now->all_usable; m++)
+			r[m] = now->usable[m] ? r[m] : 0, g[m] = now->usable[m] ? g[m] : 0, b[m] = now->usable[m] ? b[m] : 0;
+		first += now->count;
+		now = next;
+		next = done;
+	}
+}
+
+/* The three entries of a form for struct table_kernels: name_evaluate, name_nearest, name_batch. */
+#define FORM_ENTRIES(name)                                                                                                                  \
+	static void KERNEL(name##_evaluate)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])                          \
+	{                                                                                                                                       \
+		KERNEL(form_evaluate)(KERNEL(name), false, t, wi, wo, rgb);                                                                         \
+	}                                                                                                                                       \
+	static void KERNEL(name##_nearest)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])                           \
+	{                                                                                                                                       \
+		KERNEL(form_evaluate)(KERNEL(name), true, t, wi, wo, rgb);                                                                          \
+	}                                                                                                                                       \
+	static void KERNEL(name##_batch)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]) \
+	{                                                                                                                                       \
+		KERNEL(form_batch)(KERNEL(name), t, count, wi, wo, rgb);                                                                            \
 	}

@@ -24,13 +24,14 @@ static void notice_take(void *user, enum source_notice kind, const char *path, c
 	}
 }
 
-static bool is_listed(void *user, const char *name)
+/* Listed, where there is a manifest, and of this shard, where there are shards. */
+static bool is_wanted(void *user, const char *name)
 {
 	struct build *build = user;
 	struct manifest_entry *entry = manifest_find(&build->manifest, name);
 	if (entry)
 		entry->found = true;
-	return entry != NULL;
+	return (entry || build->manifest.count == 0) && build_shard_has(build->options, name);
 }
 
 static uint64_t item_weight(const struct source_item *source)
@@ -41,7 +42,7 @@ static uint64_t item_weight(const struct source_item *source)
 void build_inputs_collect(struct build *build)
 {
 	const struct source_options options = {
-		.notice = notice_take, .wanted = build->manifest.count > 0 ? is_listed : NULL, .user = build};
+		.notice = notice_take, .wanted = build->manifest.count > 0 || build->options->shard_count > 1 ? is_wanted : NULL, .user = build};
 	bp_error error;
 
 	if (source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count, &options, &build->sources,
