@@ -18,7 +18,7 @@ struct lookup {
 /* The cell of the first neighbours, which may be the others too (table_parts.h), and the fractions of the way to those. */
 struct cell {
 	uint32_t i, j, k;
-	uint32_t has_h, has_d; /* all bits, or none: they are the same */
+	uint32_t has_h, has_d; /* all bits, or none: the other neighbour is the first */
 	float h, d, p;
 };
 
