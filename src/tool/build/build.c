@@ -16,7 +16,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Hands out the listed items in name order, then members of streams as they are read, until all results are in. */
+/* Hands out the listed items, then members of streams as they are read, until all results are in. */
 static void work(struct build *build)
 {
 	bool streams = build->sources.stream_count > 0, ready = false;
@@ -25,8 +25,8 @@ static void work(struct build *build)
 	while (build_goes_on(build)) {
 		outcomes_show_progress(build);
 		if (workers_idle(build->workers) && build->submitted < build->listed_count) {
-			struct job listed = {.number = build->submitted, .name = build->sources.items[build->submitted].name, .slot = -1};
-			build->submitted++;
+			const size_t number = build->order[build->submitted++];
+			struct job listed = {.number = number, .name = build->sources.items[number].name, .slot = -1};
 			workers_submit(build->workers, &listed);
 		} else if (workers_idle(build->workers) && ready) {
 			workers_submit(build->workers, &job);
@@ -206,6 +206,7 @@ int build_run(const struct build_options *options)
 		report_summary(options, written, build.stopped, &build.totals);
 	manifest_free(&build.manifest);
 	items_free(&build.items);
+	free(build.order);
 	if (build.scanned)
 		source_list_free(&build.sources);
 	spool_close(&build.spool);

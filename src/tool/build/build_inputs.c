@@ -39,6 +39,30 @@ static uint64_t item_weight(const struct source_item *source)
 	return source->bytes != UINT64_MAX ? source->bytes : merl_file_bytes(LATTICE_MERL);
 }
 
+/* Files by name; members of a container where it stands first, one after the other: whoever goes back in it reads it from the start. */
+static int order_compare(const void *a, const void *b, void *user)
+{
+	const struct source_item *items = user, *x = &items[*(const size_t *)a], *y = &items[*(const size_t *)b];
+	const int path = x->member && y->member ? strcmp(x->path, y->path) : (x->member != NULL) - (y->member != NULL);
+	if (path != 0)
+		return path;
+	if (x->member)
+		return (x->ordinal > y->ordinal) - (x->ordinal < y->ordinal);
+	return x < y ? -1 : x > y;
+}
+
+static bp_status order_make(struct build *build, bp_error *error)
+{
+	const size_t count = build->listed_count;
+	build->order = malloc((count + 1) * sizeof *build->order);
+	if (!build->order)
+		return error_memory(error, count * sizeof *build->order);
+	for (size_t n = 0; n < count; n++)
+		build->order[n] = n;
+	qsort_r(build->order, count, sizeof *build->order, order_compare, build->sources.items);
+	return BP_OK;
+}
+
 void build_inputs_collect(struct build *build)
 {
 	const struct source_options options = {
@@ -59,6 +83,8 @@ void build_inputs_collect(struct build *build)
 		build->bytes_total += item_weight(&build->sources.items[i]);
 	}
 	build->listed_count = build->items.count;
+	if (order_make(build, &error))
+		build_stop(build, NULL, NULL, &error);
 }
 
 /* Opens streams until one has a next member. */
