@@ -98,7 +98,7 @@ bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t 
 typedef struct bp_layer {
 	uint32_t bytes;          /* of the record up to and including this layer, head included */
 	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) over valid cells and channels, e decoded, b measured */
-	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller of the two cosines */
+	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller of the two cosines at the cell's lower corner */
 	double largest_relative; /* largest |e - b|/(b + 1e-2) */
 } bp_layer;
 
