@@ -182,7 +182,7 @@ static void sizes_of_all_orders_pack_and_come_back_finite(void **state)
 
 static void an_illegal_name_is_refused(void **state)
 {
-	struct fit_options options = { tested, 60400, 0, 5 };
+	struct fit_options options = { .profile = tested, .budget_bytes = 60400, .effort = 5 };
 	struct record_source source = { 0 };
 	struct lattice lattice;
 	uint8_t *record = NULL;
