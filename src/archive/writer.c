@@ -9,12 +9,12 @@
 #include "codec/record.h"
 #include "error.h"
 #include "index.h"
-#include "temporary.h"
+#include "output_file.h"
 
 enum { BUFFER_BYTES = 1 << 18 };
 
 struct archive_writer {
-	struct temporary_file file;
+	struct output_file file;
 	struct index_builder index;
 	uint64_t file_bytes; /* written so far, the buffer included */
 	size_t buffered;
@@ -22,26 +22,11 @@ struct archive_writer {
 	uint8_t buffer[BUFFER_BYTES];
 };
 
-static bp_status bytes_put(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
-{
-	while (count) {
-		ssize_t put = write(writer->file.fd, bytes, count);
-		if (put < 0 && errno == EINTR)
-			continue;
-		if (put <= 0)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot write: %s", writer->file.target,
-			                 put < 0 ? strerror(errno) : "no space");
-		bytes += put;
-		count -= (size_t)put;
-	}
-	return BP_OK;
-}
-
 static bp_status buffer_flush(struct archive_writer *writer, bp_error *error)
 {
 	size_t count = writer->buffered;
 	writer->buffered = 0;
-	return bytes_put(writer, writer->buffer, count, error);
+	return output_file_write(&writer->file, writer->buffer, count, error);
 }
 
 static bp_status writer_append(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
@@ -50,7 +35,7 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 	if (count > BUFFER_BYTES - writer->buffered)
 		status = buffer_flush(writer, error);
 	if (!status && count > BUFFER_BYTES) {
-		status = bytes_put(writer, bytes, count, error);
+		status = output_file_write(&writer->file, bytes, count, error);
 	} else if (!status) {
 		memcpy(writer->buffer + writer->buffered, bytes, count);
 		writer->buffered += count;
@@ -62,26 +47,23 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 
 bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
 {
-	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES];
+	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES] = OUTPUT_UNFINISHED;
 	struct archive_writer *writer = calloc(1, sizeof *writer);
 	bp_status status;
 	if (!writer)
 		return error_memory(error, sizeof *writer);
 	writer->file.fd = -1;
-	status = temporary_create(path, &writer->file, error);
-	if (!status)
-		status = writer_append(writer, header_to_come, sizeof header_to_come, error);
+	output_file_sweep(path, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES);
+	status = output_file_open(path, OUTPUT_REPLACE, &writer->file, error);
+	if (!status) /* at once, so that the next writer knows it for ours if this one is killed */
+		status = output_file_write(&writer->file, header_to_come, sizeof header_to_come, error);
+	writer->file_bytes = sizeof header_to_come;
 	if (status) {
 		archive_writer_discard(writer);
 		return status;
 	}
 	*out = writer;
 	return BP_OK;
-}
-
-const char *archive_writer_temporary(const struct archive_writer *writer)
-{
-	return writer->file.path;
 }
 
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
@@ -113,7 +95,7 @@ static bp_status header_put(struct archive_writer *writer, const struct archive_
 	archive_header_write(header, bytes);
 	if (lseek(writer->file.fd, 0, SEEK_SET) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot seek: %s", writer->file.target, strerror(errno));
-	return bytes_put(writer, bytes, sizeof bytes, error);
+	return output_file_write(&writer->file, bytes, sizeof bytes, error);
 }
 
 bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
@@ -128,7 +110,7 @@ bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
 	if (!status)
 		status = header_put(writer, &header, error);
 	if (!status)
-		status = temporary_commit(&writer->file, error);
+		status = output_file_commit_synced(&writer->file, error);
 	archive_writer_discard(writer);
 	return status;
 }
@@ -137,7 +119,7 @@ void archive_writer_discard(struct archive_writer *writer)
 {
 	if (!writer)
 		return;
-	temporary_discard(&writer->file);
+	output_file_discard(&writer->file);
 	index_builder_free(&writer->index);
 	free(writer);
 }

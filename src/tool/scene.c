@@ -29,10 +29,10 @@ static bp_status word_add(struct scene_words *words, const char *text, size_t by
 	return BP_OK;
 }
 
-/* A word as it stands in the file: of every byte of a name an escape makes at most these. */
-enum { ESCAPE_BYTES_MAX = 6, WORD_BYTES_MAX = BP_NAME_BYTES_MAX * ESCAPE_BYTES_MAX };
+/* A word as it stands in the file: a path with escapes. */
+enum { WORD_BYTES_MAX = 8192 };
 
-/* What a word means, and a bit more than fits a name. */
+/* What a word means. */
 struct meaning {
 	char text[WORD_BYTES_MAX];
 	size_t bytes;
@@ -132,9 +132,28 @@ struct open_word {
 	bool backslash; /* the last byte is one that stands for no other */
 };
 
+/* Adds what may name a material or its measured file: the last part of a path must be legal. */
 static bp_status name_add(struct scene_words *words, const char *text, size_t bytes, bp_error *error)
 {
-	return name_fault(text, bytes) ? BP_OK : word_add(words, text, bytes, error);
+	const char *slash = memrchr(text, '/', bytes), *last = slash ? slash + 1 : text;
+	const char *back = memrchr(text, '\\', bytes), *windows = back ? back + 1 : text;
+	const size_t left = bytes - (size_t)(last - text), windows_left = bytes - (size_t)(windows - text);
+	return memchr(text, 0, bytes) || (name_fault(last, left) && name_fault(windows, windows_left)) ? BP_OK : word_add(words, text, bytes, error);
+}
+
+/* A URI's %XX; what is none stays as it is. */
+static void percents_read(const char *text, size_t bytes, struct meaning *to)
+{
+	to->bytes = 0;
+	for (size_t at = 0; at < bytes; at++) {
+		uint32_t byte;
+		if (text[at] == '%' && bytes - at > 2 && number_take(text + at + 1, bytes - at - 1, 16, 2, &byte) == 2) {
+			to->text[to->bytes++] = (char)byte;
+			at += 2;
+		} else {
+			to->text[to->bytes++] = text[at];
+		}
+	}
 }
 
 /* Adds the word, and what it means if it has escapes. */
@@ -149,21 +168,27 @@ static bp_status word_close(struct scene_words *words, const struct open_word *w
 		references_read(word->text, word->bytes, &meaning);
 		status = name_add(words, meaning.text, meaning.bytes, error);
 	}
+	if (!status && memchr(word->text, '%', word->bytes)) {
+		percents_read(word->text, word->bytes, &meaning);
+		status = name_add(words, meaning.text, meaning.bytes, error);
+	}
 	return status;
 }
 
 static bp_status quotes_scan(struct scene_words *words, FILE *file, bp_error *error)
 {
-	struct open_word open[4] = {{.possible = false}}; /* of " and of ', then the same with escapes */
+	static const struct { char mark; bool escapes; } KINDS[] = {{'"', false}, {'\'', false}, {'@', false}, {'"', true}, {'\'', true}};
+	enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
+	struct open_word open[KIND_COUNT] = {{.possible = false}};
 	bp_status status = BP_OK;
 	int c;
 
 	while (!status && (c = getc_unlocked(file)) != EOF)
-		for (int kind = 0; kind < 4 && !status; kind++) {
+		for (int kind = 0; kind < KIND_COUNT && !status; kind++) {
 			struct open_word *word = &open[kind];
-			const bool escapes = kind >= 2, escaped = escapes && word->backslash;
+			const bool escapes = KINDS[kind].escapes, escaped = escapes && word->backslash;
 			word->backslash = c == '\\' && !escaped;
-			if (c == (kind % 2 ? '\'' : '"') && !escaped) {
+			if (c == KINDS[kind].mark && !escaped) {
 				if (word->possible)
 					status = word_close(words, word, escapes, error);
 				word->bytes = 0;

@@ -1,6 +1,8 @@
 #include "manifest.h"
 
 #include "name.h"
+#include "merl/normal_form.h"
+#include "merl/source_kind.h"
 #include "error.h"
 #include "merl/sha256.h"
 
@@ -97,6 +99,17 @@ static bool bytes_parse(const char *text, uint64_t *out)
 	return true;
 }
 
+/* The material that NAME.binary or FOLDER/NAME.binary stands for; anything else is a name. */
+static char *name_bare(char *cell)
+{
+	const size_t suffix = source_suffix_bytes(cell);
+	char *slash = strrchr(cell, '/');
+	if (!suffix)
+		return cell;
+	cell[strlen(cell) - suffix] = '\0';
+	return slash ? slash + 1 : cell;
+}
+
 static bp_status entry_parse(const struct parser *parser, char **cells, size_t count, struct manifest_entry *entry,
                              bp_error *error)
 {
@@ -105,7 +118,7 @@ static bp_status entry_parse(const struct parser *parser, char **cells, size_t c
 		char *cell = cells[i];
 		switch (parser->columns[i]) {
 		case COLUMN_NAME:
-			entry->name = cell;
+			entry->name = name_bare(cell);
 			break;
 		case COLUMN_BYTES:
 			if (*cell && !bytes_parse(cell, &entry->bytes))
@@ -156,6 +169,12 @@ bp_status manifest_parse(char *text, size_t bytes, struct manifest *out, bp_erro
 	size_t room = 0;
 	bp_status status = BP_OK;
 
+	if (bytes >= 2 && (!memcmp(text, "\xFF\xFE", 2) || !memcmp(text, "\xFE\xFF", 2))) {
+		status = error_set(error, BP_ERROR_BAD_INPUT, 0, "this is UTF-16; save it as UTF-8");
+		goto out;
+	}
+	if (bytes >= 3 && !memcmp(text, "\xEF\xBB\xBF", 3))
+		parser.next += 3; /* a byte order mark */
 	const char *nul = memchr(text, '\0', bytes);
 	if (nul) {
 		status = error_set(error, BP_ERROR_BAD_INPUT, (uint64_t)(nul - text), "a NUL byte: this is not a text file");
@@ -237,9 +256,56 @@ out:
 
 void manifest_free(struct manifest *manifest)
 {
+	for (size_t n = 0; n < manifest->form_count; n++)
+		free(manifest->forms[n].text);
+	free(manifest->forms);
 	free(manifest->entries);
 	free(manifest->text);
 	*manifest = (struct manifest){0};
+}
+
+enum { FORM_BYTES_MAX = 4 * BP_NAME_BYTES_MAX + 1 };
+
+static bool is_ascii(const char *text)
+{
+	while (*text && (unsigned char)*text < 0x80)
+		text++;
+	return !*text;
+}
+
+static int form_compare(const void *a, const void *b)
+{
+	const struct manifest_form *x = a, *y = b;
+	return strcmp(x->text, y->text);
+}
+
+/* A hint is all that hangs on the forms: without memory there is none. */
+static void forms_make(struct manifest *manifest)
+{
+	char form[FORM_BYTES_MAX];
+	manifest->forms_made = true;
+	manifest->forms = calloc(manifest->count, sizeof *manifest->forms);
+	for (size_t n = 0; n < manifest->count && manifest->forms; n++) {
+		char *copy = !is_ascii(manifest->entries[n].name) && normal_form(manifest->entries[n].name, form, sizeof form) ? strdup(form) : NULL;
+		if (copy)
+			manifest->forms[manifest->form_count++] = (struct manifest_form){.text = copy, .entry = n};
+	}
+	if (manifest->form_count > 0)
+		qsort(manifest->forms, manifest->form_count, sizeof *manifest->forms, form_compare);
+}
+
+void manifest_note_unlisted(struct manifest *manifest, const char *name)
+{
+	char form[FORM_BYTES_MAX];
+	if (manifest->count == 0 || is_ascii(name) || !normal_form(name, form, sizeof form))
+		return;
+	if (!manifest->forms_made)
+		forms_make(manifest);
+	const struct manifest_form key = {.text = form};
+	const struct manifest_form *found =
+		manifest->form_count ? bsearch(&key, manifest->forms, manifest->form_count, sizeof key, form_compare) : NULL;
+	if (found)
+		manifest->entries[found->entry].other_form = true;
 }
 
 struct manifest_entry *manifest_find(const struct manifest *manifest, const char *name)
