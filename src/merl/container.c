@@ -230,7 +230,7 @@ static const char *entry_fault(struct container *container)
 	}
 	if (archive_entry_filetype(entry) == AE_IFLNK) {
 		const char *soft = archive_entry_symlink_utf8(entry) ? archive_entry_symlink_utf8(entry) : archive_entry_symlink(entry);
-		snprintf(container->fault, sizeof container->fault, "a symbolic link to %s, stored without its bytes; store the file itself (tar --dereference)",
+		snprintf(container->fault, sizeof container->fault, "a symbolic link to %s, stored without its bytes; store the file itself (tar --dereference, zip without -y)",
 		         text_or(soft, "another file"));
 		return container->fault;
 	}

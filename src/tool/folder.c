@@ -61,8 +61,12 @@ static bool folder_check(const char *folder)
 	if (fd >= 0)
 		close(fd);
 	free(path);
-	if (status)
-		report_error(NULL, NULL, &error);
+	if (status) {
+		bp_error here; /* the reason, behind the name that means nothing to anybody */
+		const char *reason = strstr(error.message, ".brdfpack.check: ");
+		error_set(&here, status, BP_NO_OFFSET, "%s", reason ? reason + strlen(".brdfpack.check: ") : error.message);
+		report_error(folder, NULL, &here);
+	}
 	return !status;
 }
 

@@ -8,13 +8,18 @@
 #ifndef TOOL_SCENE_H
 #define TOOL_SCENE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "brdfpack.h"
 
+struct scene_word {
+	char *text;
+	bool spare; /* it also reads otherwise, as another word: where this one means nothing, nothing is missing */
+};
 /* Words of all the files that were added; zeroed to begin with. */
 struct scene_words {
-	char **word;
+	struct scene_word *word;
 	size_t count, room;
 };
 

@@ -44,7 +44,8 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 		report_text("%s: interrupted; not written", options->output);
 		return 128 + interrupt_signal();
 	}
-	report_remark(options->output, &error);
+	if (!quiet)
+		report_remark(options->output, &error);
 	if (!quiet) {
 		printf("%s: %" PRIu64 " material%s", options->output, totals.copied, totals.copied == 1 ? "" : "s");
 		if (totals.replaced > 0)

@@ -44,14 +44,14 @@ static bool scenes_find(struct subset *subset, struct selection *selection)
 {
 	bp_error error;
 	for (size_t n = 0; n < subset->words.count; n++) {
-		const char *word = subset->words.word[n];
+		const char *word = subset->words.word[n].text;
 		bp_status status = material_name_find(selection->archive, word, &subset->index[subset->count], &error);
 		if (!status) {
 			subset->count++;
 		} else if (status != BP_ERROR_NOT_FOUND) {
 			report_error(subset->path, word, &error);
 			return false;
-		} else if (source_suffix_bytes(word)) {
+		} else if (source_suffix_bytes(word) && !subset->words.word[n].spare) {
 			selection_missing_report(selection, word);
 			subset->lacking = true;
 		}
@@ -106,7 +106,8 @@ static int subset_write(struct subset *subset)
 		report_text("%s: interrupted; not written", subset->copy.output);
 		return 128 + interrupt_signal();
 	}
-	report_remark(subset->copy.output, &error);
+	if (!subset->quiet)
+		report_remark(subset->copy.output, &error);
 	if (!subset->quiet)
 		printf("%s: %" PRIu64 " material%s, %" PRIu64 " of %" PRIu64 " bytes of their records\n", subset->copy.output, totals.copied,
 		       totals.copied == 1 ? "" : "s", totals.bytes_to, totals.bytes_from);
