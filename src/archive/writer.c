@@ -1,6 +1,7 @@
 #include "writer.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -15,6 +16,8 @@ enum { BUFFER_BYTES = 1 << 18 };
 
 struct archive_writer {
 	struct output_file file;
+	bool in_memory;            /* then the bytes go to: */
+	struct byte_buffer memory;
 	struct index_builder index;
 	uint64_t file_bytes; /* written so far, the buffer included */
 	size_t buffered;
@@ -22,11 +25,20 @@ struct archive_writer {
 	uint8_t buffer[BUFFER_BYTES];
 };
 
+static bp_status bytes_put(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
+{
+	if (writer->in_memory) {
+		write_bytes(&writer->memory, bytes, count);
+		return writer->memory.failed ? error_memory(error, writer->memory.count + count) : BP_OK;
+	}
+	return output_file_write(&writer->file, bytes, count, error);
+}
+
 static bp_status buffer_flush(struct archive_writer *writer, bp_error *error)
 {
 	size_t count = writer->buffered;
 	writer->buffered = 0;
-	return output_file_write(&writer->file, writer->buffer, count, error);
+	return bytes_put(writer, writer->buffer, count, error);
 }
 
 static bp_status writer_append(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
@@ -35,7 +47,7 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 	if (count > BUFFER_BYTES - writer->buffered)
 		status = buffer_flush(writer, error);
 	if (!status && count > BUFFER_BYTES) {
-		status = output_file_write(&writer->file, bytes, count, error);
+		status = bytes_put(writer, bytes, count, error);
 	} else if (!status) {
 		memcpy(writer->buffer + writer->buffered, bytes, count);
 		writer->buffered += count;
@@ -45,18 +57,22 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 	return status;
 }
 
-bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
+/* path NULL: in memory */
+static bp_status writer_open(const char *path, struct archive_writer **out, bp_error *error)
 {
 	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES] = OUTPUT_UNFINISHED;
 	struct archive_writer *writer = calloc(1, sizeof *writer);
-	bp_status status;
+	bp_status status = BP_OK;
 	if (!writer)
 		return error_memory(error, sizeof *writer);
 	writer->file.fd = -1;
-	output_file_sweep(path, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES);
-	status = output_file_open(path, OUTPUT_REPLACE, &writer->file, error);
+	writer->in_memory = !path;
+	if (path) {
+		output_file_sweep(path, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES);
+		status = output_file_open(path, OUTPUT_REPLACE, &writer->file, error);
+	}
 	if (!status) /* at once, so that the next writer knows it for ours if this one is killed */
-		status = output_file_write(&writer->file, header_to_come, sizeof header_to_come, error);
+		status = bytes_put(writer, header_to_come, sizeof header_to_come, error);
 	writer->file_bytes = sizeof header_to_come;
 	if (status) {
 		archive_writer_discard(writer);
@@ -64,6 +80,16 @@ bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_
 	}
 	*out = writer;
 	return BP_OK;
+}
+
+bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
+{
+	return writer_open(path ? path : "", out, error);
+}
+
+bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error)
+{
+	return writer_open(NULL, out, error);
 }
 
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
@@ -93,12 +119,17 @@ static bp_status header_put(struct archive_writer *writer, const struct archive_
 {
 	uint8_t bytes[ARCHIVE_HEADER_BYTES];
 	archive_header_write(header, bytes);
+	if (writer->in_memory) {
+		memcpy(writer->memory.bytes, bytes, sizeof bytes);
+		return BP_OK;
+	}
 	if (lseek(writer->file.fd, 0, SEEK_SET) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot seek: %s", writer->file.target, strerror(errno));
-	return output_file_write(&writer->file, bytes, sizeof bytes, error);
+	return bytes_put(writer, bytes, sizeof bytes, error);
 }
 
-bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
+/* Index and header: the archive is whole then, where it is. */
+static bp_status writer_end(struct archive_writer *writer, bp_error *error)
 {
 	struct archive_header header = {
 		.major = ARCHIVE_MAJOR, .minor = ARCHIVE_MINOR, .count = writer->index.count, .index_offset = writer->file_bytes,
@@ -107,10 +138,26 @@ bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
 	if (!status)
 		status = buffer_flush(writer, error);
 	header.file_bytes = writer->file_bytes;
-	if (!status)
-		status = header_put(writer, &header, error);
+	return status ? status : header_put(writer, &header, error);
+}
+
+bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
+{
+	bp_status status = writer_end(writer, error);
 	if (!status)
 		status = output_file_commit_synced(&writer->file, error);
+	archive_writer_discard(writer);
+	return status;
+}
+
+bp_status archive_writer_commit_memory(struct archive_writer *writer, uint8_t **bytes, size_t *count, bp_error *error)
+{
+	const bp_status status = writer_end(writer, error);
+	if (!status) {
+		*bytes = writer->memory.bytes;
+		*count = writer->memory.count;
+		writer->memory = (struct byte_buffer){0};
+	}
 	archive_writer_discard(writer);
 	return status;
 }
@@ -120,6 +167,7 @@ void archive_writer_discard(struct archive_writer *writer)
 	if (!writer)
 		return;
 	output_file_discard(&writer->file);
+	byte_buffer_free(&writer->memory);
 	index_builder_free(&writer->index);
 	free(writer);
 }
