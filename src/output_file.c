@@ -231,7 +231,7 @@ static void likeness_keep(struct output_file *out)
 	(void)!fchmod(out->fd, mode); /* a file system without modes is legal */
 }
 
-static bp_status file_close(struct output_file *out)
+static int file_close(struct output_file *out)
 {
 	const int fd = out->fd;
 	out->fd = -1;
@@ -255,7 +255,9 @@ static bp_status place_new(struct output_file *out, bp_error *error)
 			out->temporary = NULL;
 		}
 	}
-	return !failed ? BP_OK : errno == EEXIST ? refuse_taken(out->target, error) : refuse(out->target, "create", error);
+	if (!failed)
+		return BP_OK;
+	return errno == EEXIST ? refuse_taken(out->target, error) : refuse(out->target, "create", error);
 }
 
 static bp_status place_over(struct output_file *out, bp_error *error)

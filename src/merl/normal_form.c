@@ -1,6 +1,7 @@
 #include "normal_form.h"
 
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "name.h"
@@ -102,4 +103,51 @@ bool normal_form_equal(const char *a, const char *b)
 {
 	char x[NORMAL_BYTES], y[NORMAL_BYTES];
 	return !is_ascii(a) && !is_ascii(b) && strcmp(a, b) != 0 && normal_form(a, x, sizeof x) && normal_form(b, y, sizeof y) && !strcmp(x, y);
+}
+
+void normal_forms_add(struct normal_forms *forms, const char *text, size_t number)
+{
+	char form[NORMAL_BYTES];
+	if (is_ascii(text) || !normal_form(text, form, sizeof form))
+		return;
+	if (forms->count == forms->room) {
+		const size_t room = forms->room ? 2 * forms->room : 64;
+		struct normal_form_entry *entry = realloc(forms->entry, room * sizeof *entry);
+		if (!entry)
+			return;
+		forms->entry = entry;
+		forms->room = room;
+	}
+	char *copy = strdup(form);
+	if (copy)
+		forms->entry[forms->count++] = (struct normal_form_entry){.form = copy, .number = number};
+	forms->sorted = false;
+}
+
+static int entry_compare(const void *a, const void *b)
+{
+	return strcmp(((const struct normal_form_entry *)a)->form, ((const struct normal_form_entry *)b)->form);
+}
+
+bool normal_forms_find(struct normal_forms *forms, const char *text, size_t *number)
+{
+	char form[NORMAL_BYTES];
+	if (forms->count == 0 || is_ascii(text) || !normal_form(text, form, sizeof form))
+		return false;
+	if (!forms->sorted)
+		qsort(forms->entry, forms->count, sizeof *forms->entry, entry_compare);
+	forms->sorted = true;
+	const struct normal_form_entry key = {.form = form};
+	const struct normal_form_entry *found = bsearch(&key, forms->entry, forms->count, sizeof key, entry_compare);
+	if (found)
+		*number = found->number;
+	return found;
+}
+
+void normal_forms_free(struct normal_forms *forms)
+{
+	for (size_t n = 0; n < forms->count; n++)
+		free(forms->entry[n].form);
+	free(forms->entry);
+	*forms = (struct normal_forms){0};
 }

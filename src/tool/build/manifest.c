@@ -1,7 +1,6 @@
 #include "manifest.h"
 
 #include "name.h"
-#include "merl/normal_form.h"
 #include "merl/source_kind.h"
 #include "error.h"
 #include "merl/sha256.h"
@@ -256,56 +255,20 @@ out:
 
 void manifest_free(struct manifest *manifest)
 {
-	for (size_t n = 0; n < manifest->form_count; n++)
-		free(manifest->forms[n].text);
-	free(manifest->forms);
+	normal_forms_free(&manifest->forms);
 	free(manifest->entries);
 	free(manifest->text);
 	*manifest = (struct manifest){0};
 }
 
-enum { FORM_BYTES_MAX = 4 * BP_NAME_BYTES_MAX + 1 };
-
-static bool is_ascii(const char *text)
-{
-	while (*text && (unsigned char)*text < 0x80)
-		text++;
-	return !*text;
-}
-
-static int form_compare(const void *a, const void *b)
-{
-	const struct manifest_form *x = a, *y = b;
-	return strcmp(x->text, y->text);
-}
-
-/* A hint is all that hangs on the forms: without memory there is none. */
-static void forms_make(struct manifest *manifest)
-{
-	char form[FORM_BYTES_MAX];
-	manifest->forms_made = true;
-	manifest->forms = calloc(manifest->count, sizeof *manifest->forms);
-	for (size_t n = 0; n < manifest->count && manifest->forms; n++) {
-		char *copy = !is_ascii(manifest->entries[n].name) && normal_form(manifest->entries[n].name, form, sizeof form) ? strdup(form) : NULL;
-		if (copy)
-			manifest->forms[manifest->form_count++] = (struct manifest_form){.text = copy, .entry = n};
-	}
-	if (manifest->form_count > 0)
-		qsort(manifest->forms, manifest->form_count, sizeof *manifest->forms, form_compare);
-}
-
 void manifest_note_unlisted(struct manifest *manifest, const char *name)
 {
-	char form[FORM_BYTES_MAX];
-	if (manifest->count == 0 || is_ascii(name) || !normal_form(name, form, sizeof form))
-		return;
-	if (!manifest->forms_made)
-		forms_make(manifest);
-	const struct manifest_form key = {.text = form};
-	const struct manifest_form *found =
-		manifest->form_count ? bsearch(&key, manifest->forms, manifest->form_count, sizeof key, form_compare) : NULL;
-	if (found)
-		manifest->entries[found->entry].other_form = true;
+	size_t number;
+	for (size_t n = 0; n < manifest->count && !manifest->forms_made; n++)
+		normal_forms_add(&manifest->forms, manifest->entries[n].name, n);
+	manifest->forms_made = true;
+	if (normal_forms_find(&manifest->forms, name, &number))
+		manifest->entries[number].other_form = true;
 }
 
 struct manifest_entry *manifest_find(const struct manifest *manifest, const char *name)

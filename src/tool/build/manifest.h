@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "brdfpack.h"
+#include "merl/normal_form.h"
 
 enum { MANIFEST_FILE_BYTES_MAX = 256 << 20 };
 
@@ -33,8 +34,7 @@ struct manifest {
 	char *text;
 	struct manifest_entry *entries; /* in ascending byte order of the name */
 	size_t count;
-	struct manifest_form { char *text; size_t entry; } *forms; /* of names that are not ASCII (normal_form.h), in ascending order */
-	size_t form_count;
+	struct normal_forms forms; /* of the names, made when the first unlisted one is noted */
 	bool forms_made;
 };
 

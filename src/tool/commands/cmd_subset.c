@@ -9,6 +9,7 @@
 
 #include "archive/merge.h"
 #include "error.h"
+#include "merl/normal_form.h"
 #include "merl/source_kind.h"
 
 #include <inttypes.h>
@@ -19,7 +20,7 @@ struct subset {
 	const char *path; /* of the archive */
 	struct copy_options copy;
 	bool quiet, force;
-	bool lacking; /* a scene names a measured file that the archive has not */
+	bool lacking; /* a scene names a material that the archive has not, or has in another Unicode form */
 	struct scene_words words;
 	size_t scene_count;
 	const char **inputs; /* the archive, then the scenes: for the output's check */
@@ -39,24 +40,49 @@ static int ascending(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Adds the materials whose names, or measured files, are among the scenes' words. Files that are not there are told. */
-static bool scenes_find(struct subset *subset, struct selection *selection)
+/* Names of scenes that are there in another Unicode form only. */
+static void other_forms_report(struct subset *subset, struct selection *selection, struct normal_forms *forms)
 {
-	bp_error error;
-	for (size_t n = 0; n < subset->words.count; n++) {
-		const char *word = subset->words.word[n].text;
-		bp_status status = material_name_find(selection->archive, word, &subset->index[subset->count], &error);
-		if (!status) {
-			subset->count++;
-		} else if (status != BP_ERROR_NOT_FOUND) {
-			report_error(subset->path, word, &error);
-			return false;
-		} else if (source_suffix_bytes(word) && !subset->words.word[n].spare) {
-			selection_missing_report(selection, word);
+	struct index_page leaf = {0};
+	struct index_entry entry;
+	size_t number;
+	for (uint64_t n = 0; forms->count > 0 && n < bp_archive_count(selection->archive); n++) {
+		if (archive_entry(selection->archive, n, &leaf, &entry, NULL))
+			return; /* copying will say why */
+		if (normal_forms_find(forms, entry.name, &number)) {
+			selection_missing_report(selection, subset->words.word[number].text);
 			subset->lacking = true;
 		}
 	}
-	return true;
+}
+
+/* Adds the materials whose names, or measured files, are among the scenes' words. Files that are not there are told. */
+static bool scenes_find(struct subset *subset, struct selection *selection)
+{
+	struct normal_forms forms = {0};
+	char name[BP_NAME_BYTES_MAX + 1];
+	bp_error error;
+	bp_status status = BP_OK;
+	for (size_t n = 0; n < subset->words.count; n++) {
+		const struct scene_word *word = &subset->words.word[n];
+		status = material_name_find(selection->archive, word->text, &subset->index[subset->count], &error);
+		if (!status) {
+			subset->count++;
+		} else if (status != BP_ERROR_NOT_FOUND) {
+			report_error(subset->path, word->text, &error);
+			break;
+		} else if (source_suffix_bytes(word->text) && !word->spare) {
+			selection_missing_report(selection, word->text);
+			subset->lacking = true;
+		} else if (!word->spare && material_name_bare(word->text, name)) {
+			normal_forms_add(&forms, name, n);
+		}
+		status = BP_OK;
+	}
+	if (!status)
+		other_forms_report(subset, selection, &forms);
+	normal_forms_free(&forms);
+	return !status;
 }
 
 /* Which materials: those named and those the scenes name, each once, in the archive's order. */

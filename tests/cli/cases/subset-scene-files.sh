@@ -19,6 +19,10 @@ done
 echo '{"a": "alpha.binary", "b": "brdfs/bteta.binary", "c": "wood.png"}' >lacking.json
 code brdfpack subset -q -o out.bpk --scene lacking.json all.bpk
 names out.bpk
+cp alpha.binary grün.binary && build -q -o green.bpk grün.binary beta.binary
+printf '{"a": "gru\xcc\x88n", "b": "beta", "c": "br\xc3\xa4unlich"}' >decomposed.json
+code brdfpack subset -q -o out.bpk --scene decomposed.json green.bpk
+names out.bpk
 echo '{"b": "brdfs/wood.binary"}' >none.json
 rm out.bpk
 code brdfpack subset -q -o out.bpk --scene none.json all.bpk
