@@ -1,6 +1,5 @@
 #include "output_file.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdatomic.h>
@@ -9,10 +8,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "bytes.h"
 #include "error.h"
+#include "output_path.h"
 
-enum { TRIES = 1000, TEMPORARY_BYTES = 64, COMPARE_BYTES = 1 << 14, MODE_BITS = 0777 };
+enum { TRIES = 1000, COMPARE_BYTES = 1 << 14, MODE_BITS = 0777 };
 
 static bp_status refuse(const char *path, const char *what, bp_error *error)
 {
@@ -24,91 +23,24 @@ static bp_status refuse_taken(const char *path, bp_error *error)
 	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: is there already", path);
 }
 
-/* The folder's length in a path, the last slash included; 0: the current folder. */
-static size_t folder_bytes(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-/* A path in the target's folder; malloc'ed. */
-static char *path_beside(const char *target, const char *name)
-{
-	const size_t folder = folder_bytes(target), bytes = folder + strlen(name) + 1;
-	char *path = malloc(bytes);
-	if (path) {
-		memcpy(path, target, folder);
-		memcpy(path + folder, name, bytes - folder);
-	}
-	return path;
-}
-
-static char *folder_of(const char *target)
-{
-	return path_beside(target, folder_bytes(target) ? "" : ".");
-}
-
-/* Follows a link, refuses what is no regular file. *found: a file is there, and *about what is known of it. */
-static bp_status target_resolve(const char *path, char **out, bool *found, struct stat *about, bp_error *error)
-{
-	*found = false;
-	if (!*path)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the output path is empty");
-	*found = lstat(path, about) == 0;
-	if (!*found && errno == ENAMETOOLONG)
-		return refuse(path, "create", error);
-	if (!*found && path[strlen(path) - 1] == '/')
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: names a folder, not a file", path);
-	const bool link = *found && S_ISLNK(about->st_mode);
-	char *target = link ? realpath(path, NULL) : strdup(path);
-	if (!target && link && errno != ENOMEM)
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: a link that leads to nothing: %s", path, strerror(errno));
-	if (!target)
-		return error_memory(error, strlen(path) + 1);
-	if (link && stat(target, about) != 0) {
-		free(target);
-		return refuse(path, "follow the link", error);
-	}
-	if (*found && !S_ISREG(about->st_mode)) {
-		free(target);
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: is %s, not a regular file", path,
-		                 S_ISDIR(about->st_mode) ? "a folder" : "a special file");
-	}
-	*out = target;
-	return BP_OK;
-}
-
-/* Locks belong to the process, so they end with it and do not pass to forked workers. */
-static int file_lock(int fd)
-{
-	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-	return fcntl(fd, F_SETLK, &lock);
-}
-
 /* An unnamed file in the folder of the target, or -1 where the system has no such thing. */
 static int open_unnamed(const char *target, mode_t mode)
 {
-	char *folder = folder_of(target);
+	char *folder = output_path_folder(target);
 	const int fd = folder ? open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, mode) : -1;
 	free(folder);
 	return fd;
-}
-
-static void stem_print(const char *target, char stem[TEMPORARY_BYTES])
-{
-	const char *name = target + folder_bytes(target);
-	snprintf(stem, TEMPORARY_BYTES, ".brdfpack-%08x-", bytes_crc32(name, strlen(name)));
 }
 
 /* Tries one short name after the other until `take` makes a file of it (0), or fails for another reason than that it is taken. */
 static bp_status name_find(struct output_file *out, int (*take)(struct output_file *, const char *, mode_t), mode_t mode, bp_error *error)
 {
 	static atomic_uint serial; /* two writers of one process get two names */
-	char stem[TEMPORARY_BYTES], name[2 * TEMPORARY_BYTES];
-	stem_print(out->target, stem);
+	char stem[OUTPUT_STEM_BYTES], name[2 * OUTPUT_STEM_BYTES];
+	output_path_stem(out->target, stem);
 	for (int n = 0; n < TRIES; n++) {
 		snprintf(name, sizeof name, "%s%ld-%u", stem, (long)getpid(), atomic_fetch_add(&serial, 1));
-		char *path = path_beside(out->target, name);
+		char *path = output_path_beside(out->target, name);
 		if (!path)
 			return error_memory(error, strlen(out->target) + sizeof name);
 		if (take(out, path, mode) == 0) {
@@ -129,7 +61,7 @@ static int take_by_creating(struct output_file *out, const char *path, mode_t mo
 	if (out->fd < 0)
 		return -1;
 	/* A folder without locks is legal; a sweep may have taken the file for a dead writer's before it was locked. */
-	if (file_lock(out->fd) == 0 && fstat(out->fd, &made) == 0 && made.st_nlink == 0) {
+	if (output_path_lock(out->fd) == 0 && fstat(out->fd, &made) == 0 && made.st_nlink == 0) {
 		close(out->fd);
 		out->fd = -1;
 		errno = EEXIST;
@@ -155,14 +87,14 @@ static bp_status create(struct output_file *out, bp_error *error)
 		out->fd = open_unnamed(out->target, mode);
 	if (out->fd < 0)
 		return name_find(out, take_by_creating, mode, error);
-	file_lock(out->fd);
+	output_path_lock(out->fd);
 	return BP_OK;
 }
 
 bp_status output_file_open(const char *path, enum output_rule rule, struct output_file *out, bp_error *error)
 {
 	*out = (struct output_file){.fd = -1, .rule = rule};
-	bp_status status = target_resolve(path, &out->target, &out->replaces, &out->before, error);
+	bp_status status = output_path_resolve(path, &out->target, &out->replaces, &out->before, error);
 	if (!status && rule == OUTPUT_NEW && out->replaces)
 		status = refuse_taken(path, error);
 	if (!status && rule == OUTPUT_COMPARE) {
@@ -238,31 +170,73 @@ static int file_close(struct output_file *out)
 	return close(fd);
 }
 
+/* Some file systems have nothing to sync, and say so. */
+static bool sync_means_nothing(int reason)
+{
+	return reason == EINVAL || reason == EOPNOTSUPP || reason == ENOSYS;
+}
+
+/* All bytes of one file to another. */
+static bp_status bytes_copy(int from, struct output_file *to, bp_error *error)
+{
+	uint8_t bytes[COMPARE_BYTES];
+	off_t at = 0;
+	for (;;) {
+		const ssize_t got = pread(from, bytes, sizeof bytes, at);
+		if (got < 0 && errno == EINTR)
+			continue;
+		if (got < 0)
+			return refuse(to->target, "read back", error);
+		if (got == 0)
+			return BP_OK;
+		bp_status status = output_file_write(to, bytes, (size_t)got, error);
+		if (status)
+			return status;
+		at += got;
+	}
+}
+
+/* Names the unnamed file; where that is not allowed, as in some containers, a copy has a name from the start. */
+static bp_status name_give(struct output_file *out, bp_error *error)
+{
+	if (!name_find(out, take_by_linking, 0, NULL))
+		return BP_OK;
+	const int unnamed = out->fd;
+	out->fd = -1;
+	bp_status status = name_find(out, take_by_creating, out->replaces ? 0600 : 0666, error);
+	if (!status)
+		status = bytes_copy(unnamed, out, error);
+	if (!status && fsync(out->fd) != 0 && !sync_means_nothing(errno))
+		status = refuse(out->target, "sync", error);
+	close(unnamed);
+	return status;
+}
+
 /* Takes no other file's place, not even one that has just appeared: a link fails there, where rename would not. */
 static bp_status place_new(struct output_file *out, bp_error *error)
 {
-	int failed;
-	if (!out->temporary) {
-		failed = take_by_linking(out, out->target, 0);
-	} else {
-		failed = link(out->temporary, out->target);
-		if (failed && errno != EEXIST && access(out->target, F_OK) != 0) /* a file system without links */
-			failed = rename(out->temporary, out->target);
-		else if (!failed)
-			unlink(out->temporary);
-		if (!failed) {
-			free(out->temporary);
-			out->temporary = NULL;
-		}
-	}
-	if (!failed)
+	if (!out->temporary && take_by_linking(out, out->target, 0) == 0)
 		return BP_OK;
-	return errno == EEXIST ? refuse_taken(out->target, error) : refuse(out->target, "create", error);
+	if (!out->temporary && errno == EEXIST)
+		return refuse_taken(out->target, error);
+	bp_status status = out->temporary ? BP_OK : name_give(out, error);
+	if (status)
+		return status;
+	int failed = link(out->temporary, out->target);
+	if (!failed)
+		unlink(out->temporary);
+	else if (errno != EEXIST && access(out->target, F_OK) != 0) /* a file system without links */
+		failed = rename(out->temporary, out->target);
+	if (failed)
+		return errno == EEXIST ? refuse_taken(out->target, error) : refuse(out->target, "create", error);
+	free(out->temporary);
+	out->temporary = NULL;
+	return BP_OK;
 }
 
 static bp_status place_over(struct output_file *out, bp_error *error)
 {
-	bp_status status = out->temporary ? BP_OK : name_find(out, take_by_linking, 0, error);
+	bp_status status = out->temporary ? BP_OK : name_give(out, error);
 	if (status)
 		return status;
 	likeness_keep(out);
@@ -297,15 +271,9 @@ bp_status output_file_commit(struct output_file *out, bp_error *error)
 	return status;
 }
 
-/* Some file systems have nothing to sync, and say so. */
-static bool sync_means_nothing(int reason)
-{
-	return reason == EINVAL || reason == EOPNOTSUPP || reason == ENOSYS;
-}
-
 static void folder_sync(const char *target, bp_error *error)
 {
-	char *folder = folder_of(target);
+	char *folder = output_path_folder(target);
 	const int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
 	if (fd < 0 || (fsync(fd) != 0 && errno != EINVAL))
 		error_set(error, BP_OK, BP_NO_OFFSET,
@@ -342,53 +310,6 @@ void output_file_discard(struct output_file *out)
 	free(out->target);
 	free(out->temporary);
 	*out = (struct output_file){.fd = -1};
-}
-
-/* Is it one that this program made, and does nobody hold its lock? */
-static bool is_stale(int fd, const void *magic, size_t magic_bytes)
-{
-	uint8_t head[64];
-	struct stat about;
-	const size_t mark_bytes = sizeof OUTPUT_UNFINISHED - 1;
-	if (fstat(fd, &about) != 0 || !S_ISREG(about.st_mode) || about.st_uid != geteuid())
-		return false;
-	const ssize_t got = pread(fd, head, sizeof head, 0);
-	if (got < (ssize_t)sizeof head || (memcmp(head, OUTPUT_UNFINISHED, mark_bytes) != 0 && memcmp(head, magic, magic_bytes) != 0))
-		return false;
-	return file_lock(fd) == 0;
-}
-
-void output_file_sweep(const char *path, const void *magic, size_t magic_bytes)
-{
-	struct stat about;
-	bool found;
-	char stem[TEMPORARY_BYTES], *target = NULL;
-	if (target_resolve(path, &target, &found, &about, NULL))
-		return;
-	char *folder_path = folder_of(target);
-	DIR *folder = folder_path ? opendir(folder_path) : NULL;
-	struct dirent *entry;
-	stem_print(target, stem);
-	while (folder && (entry = readdir(folder))) {
-		long process;
-		unsigned number;
-		int end = 0;
-		if (strncmp(entry->d_name, stem, strlen(stem)) != 0 ||
-		    sscanf(entry->d_name + strlen(stem), "%ld-%u%n", &process, &number, &end) != 2 || entry->d_name[strlen(stem) + (size_t)end] ||
-		    process == (long)getpid())
-			continue;
-		char *file = path_beside(target, entry->d_name);
-		const int fd = file ? open(file, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK) : -1;
-		if (fd >= 0 && is_stale(fd, magic, magic_bytes))
-			unlink(file);
-		if (fd >= 0)
-			close(fd);
-		free(file);
-	}
-	if (folder)
-		closedir(folder);
-	free(folder_path);
-	free(target);
 }
 
 bp_status output_scratch_open(const char *path, int *fd, bp_error *error)

@@ -1,6 +1,6 @@
 /*
- * Files that appear whole or not at all, in both manners: without a name until they are complete, and where the file system has no
- * such thing. open and fsync stand before libc's, so that they can fail here.
+ * Files that appear whole or not at all, in each manner: without a name until they are complete, where the file system has no
+ * such thing, and where it may not be named. open, linkat and fsync stand before libc's, so that they can fail here.
  */
 #include "archive_fixture.h"
 
@@ -16,6 +16,7 @@
 #include "output_file.h"
 
 static bool names_only;   /* a file system without O_TMPFILE */
+static bool links_barred; /* a container that lets no file be named by its descriptor */
 static int folder_refusal, fsync_refusal; /* errno of opening, of syncing a folder; 0: it works */
 
 int open(const char *path, int flags, ...)
@@ -29,6 +30,13 @@ int open(const char *path, int flags, ...)
 	if (folder_refusal && (flags & O_TMPFILE) == O_DIRECTORY)
 		return errno = folder_refusal, -1;
 	return openat(AT_FDCWD, path, flags, mode);
+}
+
+int linkat(int from_folder, const char *from, int to_folder, const char *to, int flags)
+{
+	if (links_barred && flags & AT_SYMLINK_FOLLOW)
+		return errno = EPERM, -1;
+	return (int)syscall(SYS_linkat, from_folder, from, to_folder, to, flags);
 }
 
 int fsync(int fd)
@@ -78,17 +86,25 @@ static mode_t mode_of(const char *path)
 	return about.st_mode & 07777;
 }
 
-/* Every test below runs in both manners. */
+/* Every test below runs in three manners. */
 static int with_names(void **state)
 {
 	(void)state;
 	names_only = true;
+	links_barred = false;
 	return 0;
 }
 static int without_names(void **state)
 {
 	(void)state;
+	names_only = links_barred = false;
+	return 0;
+}
+static int by_copies(void **state)
+{
+	(void)state;
 	names_only = false;
+	links_barred = true;
 	return 0;
 }
 
@@ -291,20 +307,20 @@ static void a_scratch_file_has_no_name(void **state)
 	assert_int_equal(output_scratch_open(fixture_path("none/out"), &fd, NULL), BP_ERROR_IO);
 }
 
-#define BOTH(test) cmocka_unit_test_setup(test, without_names), {#test " (named)", test, with_names, NULL, NULL}
+#define EACH(test) cmocka_unit_test_setup(test, without_names), {#test " (named)", test, with_names, NULL, NULL}, {#test " (copied)", test, by_copies, NULL, NULL}
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		BOTH(a_rule_says_what_may_be_replaced),
-		BOTH(what_appears_meanwhile_is_not_replaced),
-		BOTH(mode_and_owner_are_kept),
-		BOTH(a_link_is_followed_and_one_to_nothing_refused),
-		BOTH(the_longest_name_can_be_written_and_a_longer_one_is_refused_at_once),
-		BOTH(a_folder_that_cannot_be_synced_is_a_warning),
-		BOTH(nobody_else_s_file_is_touched),
-		BOTH(what_a_killed_writer_left_goes_with_the_next_run_but_not_a_living_ones),
-		BOTH(a_scratch_file_has_no_name),
+		EACH(a_rule_says_what_may_be_replaced),
+		EACH(what_appears_meanwhile_is_not_replaced),
+		EACH(mode_and_owner_are_kept),
+		EACH(a_link_is_followed_and_one_to_nothing_refused),
+		EACH(the_longest_name_can_be_written_and_a_longer_one_is_refused_at_once),
+		EACH(a_folder_that_cannot_be_synced_is_a_warning),
+		EACH(nobody_else_s_file_is_touched),
+		EACH(what_a_killed_writer_left_goes_with_the_next_run_but_not_a_living_ones),
+		EACH(a_scratch_file_has_no_name),
 	};
 	return cmocka_run_group_tests(tests, fixture_folder_make, fixture_folder_remove);
 }
