@@ -8,12 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "container_fault.h"
 #include "error.h"
+#include "source_kind.h"
 
 enum { BLOCK_BYTES = 1 << 18, FAILURES_MAX = 1000 };
 
@@ -95,6 +95,15 @@ static bool formats_choose(struct archive *archive, enum container_order order)
 	return archive_read_support_format_zip(archive) == ARCHIVE_OK && archive_read_support_format_raw(archive) == ARCHIVE_OK;
 }
 
+/* At the end of a tar, or of a compressed file: does the file end here too? A zip has its directory there, and is looked at otherwise. */
+static void end_look(struct container *container)
+{
+	const int format = archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK;
+	const la_int64_t read = archive_filter_bytes(container->archive, -1);
+	if (!container->remark && (format == ARCHIVE_FORMAT_TAR || format == ARCHIVE_FORMAT_RAW) && read >= 0)
+		container->remark = container_rest(container->fd, read);
+}
+
 /* The next entry of any kind; *more = false at the end. After an error the next call goes on, unless it was fatal. */
 static bp_status entry_next(struct container *container, bool *more, bp_error *error)
 {
@@ -116,8 +125,10 @@ static bp_status entry_next(struct container *container, bool *more, bp_error *e
 	container->failures += answer == ARCHIVE_FAILED;
 	if (answer == ARCHIVE_EOF || answer == ARCHIVE_FATAL || container->failures > FAILURES_MAX)
 		container->finished = true;
-	if (answer == ARCHIVE_EOF)
+	if (answer == ARCHIVE_EOF) {
+		end_look(container);
 		return BP_OK;
+	}
 	if (answer != ARCHIVE_OK && answer != ARCHIVE_WARN) {
 		container->next += answer != ARCHIVE_FATAL;
 		return refuse(container, "damaged", error);
@@ -192,15 +203,11 @@ out:
 	return status;
 }
 
+/* Tables, and containers that may hold some; what has a name that cannot be read may be either. */
 static bool entry_counts(struct container *container)
 {
-	static const char suffix[] = ".binary";
-	const char *slash = strrchr(container->path, '/'), *base = slash ? slash + 1 : container->path;
-	const size_t bytes = strlen(base);
 	const bool folder = !container->raw_name && archive_entry_filetype(container->entry) == AE_IFDIR;
-	const bool nameless = !container->path[0]; /* it has a name, but one that cannot be read */
-	const bool counts = !folder && (nameless || (base[0] != '.' && bytes > sizeof suffix - 1 &&
-	                                             strcasecmp(base + bytes - (sizeof suffix - 1), suffix) == 0));
+	const bool counts = !folder && (!container->path[0] || source_kind_by_name(container->path) != SOURCE_KIND_OTHER);
 	container->members += counts;
 	container->ignored += !counts && !folder;
 	return counts;
@@ -221,6 +228,8 @@ static const char *entry_fault(struct container *container)
 		return "its name cannot be read in this character set; name another with --charset";
 	if (archive_entry_is_data_encrypted(entry) || archive_entry_is_metadata_encrypted(entry))
 		return "encrypted; unpack it with its password first";
+	if (source_kind_by_name(container->path) != SOURCE_KIND_MERL)
+		return container->raw_name ? "what is compressed in it is no tar" : "a container within a container, which is not read; unpack the outer one first";
 	if (container->raw_name)
 		return NULL;
 	if (hard && !has_bytes) {

@@ -2,9 +2,9 @@
  * container.h: MERL files inside a tar or zip, plain or compressed, read through libarchive
  * without unpacking. Part of the tool, not of the library.
  *
- * Members that count are named *.binary (in either case), not hidden ("._x.binary" is
- * no table); others are passed over and counted. Of these, what is no file with bytes of its own (a link, a device), or
- * encrypted, has a fault. Tars that were joined, one behind the other, are read as one. A single compressed MERL file (x.binary.gz) is a
+ * Members that count are named *.binary (in either case), or like a container, and not hidden ("._x.binary" is
+ * no table); others are passed over and counted. Of these, what is no file with bytes of its own (a link, a device), encrypted, or
+ * a container itself has a fault. Tars that were joined, one behind the other, are read as one. A single compressed MERL file (x.binary.gz) is a
  * container of one member. Messages name the member but not the container: the caller puts that in front.
  */
 #ifndef MERL_CONTAINER_H
@@ -36,7 +36,7 @@ enum container_order {
  */
 bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out, bp_error *error);
 
-/* What is wrong with the container as a whole although its members can be read; NULL: nothing. */
+/* What is wrong with the container as a whole although its members can be read, known when its end has been reached; NULL: nothing. */
 const char *container_remark(const struct container *container);
 
 /*

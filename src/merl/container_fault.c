@@ -20,6 +20,21 @@ static uint32_t number_at(const uint8_t *bytes, size_t count)
 	return value;
 }
 
+#define ZEROS "holds nothing but zeros: was the download completed?"
+
+/* Whether the file is zeros from this byte to its end. */
+static bool all_zeros(int fd, off_t at)
+{
+	uint8_t chunk[CHUNK_BYTES];
+	for (ssize_t got; (got = pread(fd, chunk, sizeof chunk, at)) > 0; at += got)
+		for (ssize_t n = 0; n < got; n++)
+			if (chunk[n])
+				return false;
+	return true;
+}
+
+#define REST "something else stands behind its end in the same file, and is not read; separate them"
+
 /* A zip's last record tells of other disks, and where the directory should stand: later, and something else stands before the zip. */
 static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 {
@@ -31,7 +46,7 @@ static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 	const char *fault = NULL;
 	for (ssize_t at = got - ZIP_END_BYTES; at >= 0; at--) {
 		const uint8_t *end = tail + at;
-		if (memcmp(end, "PK\5\6", 4) != 0 || at + ZIP_END_BYTES + (ssize_t)number_at(end + 20, 2) != got)
+		if (memcmp(end, "PK\5\6", 4) != 0 || at + ZIP_END_BYTES + (ssize_t)number_at(end + 20, 2) > got)
 			continue;
 		const uint32_t disk = number_at(end + 4, 2), bytes = number_at(end + 12, 4), offset = number_at(end + 16, 4);
 		if (disk != 0 && disk != 0xFFFF)
@@ -39,6 +54,8 @@ static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 		else if (bytes != UINT32_MAX && offset != UINT32_MAX && (uint64_t)(start + at) > (uint64_t)bytes + offset && head_bytes >= 4 &&
 		         !memcmp(head, "PK\3\4", 4))
 			fault = "another zip stands before this one in the same file, and its members are not read; separate them";
+		else if (!all_zeros(fd, start + at + ZIP_END_BYTES + (off_t)number_at(end + 20, 2)))
+			fault = REST;
 		break;
 	}
 	free(tail);
@@ -48,20 +65,6 @@ static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 static bool begins(const char *head, const char *word)
 {
 	return strncasecmp(head, word, strlen(word)) == 0;
-}
-
-#define ZEROS "holds nothing but zeros: was the download completed?"
-
-/* Whether the file is zeros from beginning to end. */
-static bool all_zeros(int fd)
-{
-	uint8_t chunk[CHUNK_BYTES];
-	off_t at = 0;
-	for (ssize_t got; (got = pread(fd, chunk, sizeof chunk, at)) > 0; at += got)
-		for (ssize_t n = 0; n < got; n++)
-			if (chunk[n])
-				return false;
-	return true;
 }
 
 const char *container_fault(int fd)
@@ -83,7 +86,7 @@ const char *container_fault(int fd)
 	for (size_t n = 0; n < sizeof MAGIC / sizeof *MAGIC; n++)
 		if ((size_t)got >= MAGIC[n].count && !memcmp(head, MAGIC[n].bytes, MAGIC[n].count))
 			return MAGIC[n].fault;
-	if (!head[0] && all_zeros(fd))
+	if (!head[0] && all_zeros(fd, 0))
 		return ZEROS;
 	const char *text = head;
 	if (begins(text, "\xEF\xBB\xBF"))
@@ -94,6 +97,11 @@ const char *container_fault(int fd)
 	if (begins(text, "<?xml") || text[0] == '{')
 		return "a text, as servers send for an error, in place of the file; download it again";
 	return zip_fault(fd, (const uint8_t *)head, (size_t)got);
+}
+
+const char *container_rest(int fd, int64_t end)
+{
+	return all_zeros(fd, (off_t)end) ? NULL : REST;
 }
 
 const char *container_emptiness(int fd)

@@ -116,8 +116,6 @@ static bp_status container_add(struct source_list *list, const char *path, bool 
 		notice(list, SOURCE_DAMAGED, path, reason.message);
 		return BP_OK;
 	}
-	if (container_remark(container))
-		notice(list, SOURCE_DAMAGED, path, container_remark(container));
 	while (more) {
 		status = container_next(container, &member, &more, &reason);
 		if (status == BP_ERROR_MEMORY) {
@@ -133,6 +131,8 @@ static bp_status container_add(struct source_list *list, const char *path, bool 
 		if (more && (status = item_add(list, path, &member, 0, error)) != BP_OK)
 			break;
 	}
+	if (container_remark(container) && status == BP_OK)
+		notice(list, SOURCE_DAMAGED, path, container_remark(container));
 	list->ignored_count += container_ignored(container);
 	container_close(container);
 	return status;
@@ -257,7 +257,10 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 	case SOURCE_KIND_FOREIGN:
 		notice(list, SOURCE_DAMAGED, path, "a container of a kind that is not read, or a part of one; unpack it, or pack it as zip or tar");
 		return BP_OK;
-	case SOURCE_KIND_OTHER: break;
+	case SOURCE_KIND_OTHER:
+		if ((uint64_t)about.st_size == merl_file_bytes(LATTICE_MERL))
+			notice(list, SOURCE_SKIPPED, path, "as large as a MERL file, but not called NAME.binary; rename it, or name it on the command line");
+		break;
 	}
 	list->ignored_count++;
 	return BP_OK;

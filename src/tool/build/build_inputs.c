@@ -24,8 +24,7 @@ static void notice_take(void *user, enum source_notice kind, const char *path, c
 		error_set(&error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", reason);
 		damage_take(build, path, &error);
 	} else {
-		if (!build->options->quiet)
-			report_warning(path, NULL, "%s; skipped", reason);
+		report_passed_over(path, reason, build->options->json, build->options->quiet);
 		build->totals.skipped++;
 	}
 }

@@ -44,6 +44,20 @@ void report_unpacked(const char *label, const char *name, const bp_error *error,
 	report_error(label, name, error);
 }
 
+void report_passed_over(const char *path, const char *reason, bool json, bool quiet)
+{
+	if (json) {
+		struct json line = json_begin(stdout, false);
+		json_object(&line, NULL);
+		json_string(&line, "path", path);
+		json_string(&line, "warning", reason);
+		json_close(&line);
+		json_finish(&line);
+	}
+	if (!quiet)
+		report_warning(path, NULL, "%s; skipped", reason);
+}
+
 static void material_json(const struct item *item, const char *label, const struct outcome *outcome)
 {
 	struct json json = json_begin(stdout, false);

@@ -50,6 +50,9 @@ static inline bool totals_whole(const struct build_totals *totals)
  */
 void report_unpacked(const char *label, const char *name, const bp_error *error, bool json);
 
+/* Something that was passed over without a loss, as far as is known: a warning, and with --json a line. */
+void report_passed_over(const char *path, const char *reason, bool json, bool quiet);
+
 void report_material(const struct item *item, const struct outcome *outcome, bool json, bool quiet);
 
 /* After everything. Text only when something went wrong; without counts when the build was stopped before its end. */
