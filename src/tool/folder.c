@@ -121,12 +121,15 @@ bool folder_write(const struct folder_set *set)
 		free(there);
 		return false;
 	}
-	for (uint64_t n = 0; n < set->count; n++) {
+	uint64_t count = set->count;
+	for (uint64_t n = 0; n < count; n++) {
+		if (!set->name(set->user, n))
+			count = n + 1; /* the list breaks off: writing this one says why, once */
 		const int found = name_look(set, n);
 		there[n] = found > 0;
 		free_names &= found >= 0;
 	}
-	for (uint64_t n = 0; n < set->count && free_names; n++)
+	for (uint64_t n = 0; n < count && free_names; n++)
 		whole &= there[n] || name_write(set, n);
 	free(there);
 	return free_names && whole;
