@@ -31,6 +31,8 @@ struct profile_codec {
 	bool meets_max_error; /* encode looks after options->max_error itself; otherwise record_pack tries budgets */
 	const struct section_kind *kinds;
 	uint32_t kind_count;
+	const struct section_kind *retired; /* kinds that earlier versions wrote and this one no longer reads */
+	uint32_t retired_count;
 	/*
 	 * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least
 	 * possible, when head and sections cannot be as small as request->record_bytes_max. An encoder that knows what
