@@ -41,7 +41,7 @@ TOOL_LIBS    := -larchive -lnettle -lpng
 TEST_LIBS    := -lcmocka -lgsl -lgslcblas
 
 # The benchmark alone links solvers and other people's codecs; its tests are left out where these are missing.
-BENCH_C      := $(filter-out src/bench/main.c src/bench/eval_main.c,$(wildcard src/bench/*.c))
+BENCH_C      := $(filter-out src/bench/main.c src/bench/eval_main.c src/bench/scale_main.c,$(wildcard src/bench/*.c))
 BENCH_O      := $(BENCH_C:%.c=$(BUILD)/%.o)
 BENCH_LIBS   := -lgsl -lgslcblas -llapacke -lzfp -lzstd -llzma
 BENCH_DEBIAN := libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev
@@ -66,6 +66,7 @@ help:
 	@echo "  bench-stages where a build's time goes: read, clean, regression, transform, code, measure; both profiles"
 	@echo "  bench-methods  run time against error, every method: $(BUILD)/bench/bench-methods.tsv, .svg"
 	@echo "  bench-eval   load, evaluate and sample beside the raw table"
+	@echo "  bench-scale  time and memory of every command over 100 to 1,000,000 materials: $(BUILD)/bench/scale.tsv, .svg"
 	@echo "  bench-quick  run time against error on three materials: $(BUILD)/bench/bench-quick.tsv, .svg"
 	@echo "  stress       hundreds of adversarial materials: one table of what holds (a few minutes)"
 	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
@@ -232,6 +233,15 @@ bench-eval: bench-ready bench-data $(BUILD)/bench/brdfpack-bench-eval
 	$(Q)[ $(BENCH_OUT)/eval.bpk -nt $(BUILD)/brdfpack ] || { mkdir -p $(BENCH_OUT) && $(BUILD)/brdfpack build -q -o $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo); }
 	$(Q)BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" $(BUILD)/bench/brdfpack-bench-eval $(BENCH_EVAL_FLAGS) $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo)
 
+# Archives of 100 to 1,000,000 materials: does the cost of each stay flat? BENCH_SCALE_FLAGS="--most 10000" for less.
+$(BUILD)/bench/brdfpack-bench-scale: $(BUILD)/src/bench/scale_main.o $(BUILD)/internal.a
+	@mkdir -p $(@D)
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARY_LIBS)
+BENCH_SCALE_FLAGS ?=
+bench-scale: all $(BUILD)/bench/brdfpack-bench-scale
+	$(Q)BRDFPACK=$(BUILD)/brdfpack src/bench/bench_scale.py --scale $(BUILD)/bench/brdfpack-bench-scale --out $(BENCH_OUT)/scale $(BENCH_SCALE_FLAGS) $(BENCH_OUT)
+
 # of the two scripts: --runs N, --names FILE; of bench_build.py: --cold
 BENCH_BUILD_FLAGS ?=
 bench: bench-build bench-stages
@@ -265,5 +275,5 @@ clean:
 	rm -rf $(BUILD)
 
 FORCE:
-.PHONY: all help tests pinned check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval stress stress-builds faults faults-build fuzz fuzz-build install uninstall clean FORCE
+.PHONY: all help tests pinned check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval bench-scale stress stress-builds faults faults-build fuzz fuzz-build install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

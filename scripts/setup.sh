@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, and nothing that is already there.
 #
-#     scripts/setup.sh [build|test|slow|bench]...      default: build
+#     scripts/setup.sh [build|test|slow|slurm|bench]...      default: build
 #
 #     build  what the tool and the library need
 #     test   what the unit tests (also those of the benchmark) and command-line tests need besides
 #     slow   what the clang, sanitizer and valgrind jobs need besides
+#     slurm  what the job on Slurm needs besides
 #     bench  what the benchmarks and their plots need besides
 #
 # Needs root or sudo only when something is missing; without either it names the packages and stops.
@@ -15,6 +16,7 @@ set -euo pipefail
 build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
 test="libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
+slurm="slurm-wlm munge"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 
 wanted=""
@@ -23,9 +25,10 @@ for group in "${@:-build}"; do
 	build) wanted+=" $build" ;;
 	test) wanted+=" $test" ;;
 	slow) wanted+=" $slow" ;;
+	slurm) wanted+=" $slurm" ;;
 	bench) wanted+=" $bench" ;;
 	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, bench" >&2
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, bench" >&2
 		exit 2
 		;;
 	esac

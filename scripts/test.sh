@@ -15,31 +15,33 @@
 #     stress    adversarial materials through every profile (the short form of `make stress`)
 #     faults    damaged archives, killed and starved builds, threads (the short form of `make faults`)
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
+#     slurm     shards as an array job on Slurm, on this machine alone (in continuous integration, or when named)
 #     fuzz      each fuzz target for some seconds
 #
-# Without a JOB: all of them. First everything they need is built, then the jobs run, as many at once as there are
+# Without a JOB: all of them, but for what is said above. First everything they need is built, then the jobs run, as many at once as there are
 # cores, each printing what it has to say when it ends. The last line is "N passed, M failed"; the exit code is 1 when M > 0.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
 all_jobs="asan faults fuzz python stress unit pinned cli bench install valgrind clang house"
+on_request="slurm"
 logs=build/logs
 passed=0
 failed=0
 
 for job in "$@"; do
-	case " $all_jobs " in
+	case " $all_jobs $on_request " in
 	*" $job "*) ;;
 	*)
-		echo "test.sh: unknown job '$job'; jobs are $all_jobs" >&2
+		echo "test.sh: unknown job '$job'; jobs are $all_jobs $on_request" >&2
 		exit 2
 		;;
 	esac
 done
 jobs=""
-for job in $all_jobs; do
-	if [ $# = 0 ] || [[ " $* " == *" $job "* ]]; then jobs+=" $job"; fi
+for job in $all_jobs $on_request; do
+	if { [ $# = 0 ] && { [ -n "${CI:-}" ] || [[ " $on_request " != *" $job "* ]]; }; } || [[ " $* " == *" $job "* ]]; then jobs+=" $job"; fi
 done
 # does any of these jobs run?
 wanted() {
@@ -79,12 +81,18 @@ count() {
 	fi
 }
 
-# One check: check NAME LOG COMMAND...
+# One check: check NAME LOG COMMAND...; a command that exits with 77 was skipped, and its last line says why.
 check() {
 	local name=$1 log=$2
 	shift 2
+	local code
 	"$@" >"$log" 2>&1
-	count "$name" "$log" $?
+	code=$?
+	if [ "$code" = 77 ]; then
+		echo "skipped: $name: $(tail -n 1 "$log" | sed 's/^skip: //')"
+		return 0
+	fi
+	count "$name" "$log" "$code"
 }
 
 # What prepare NAME made, as one check.
@@ -155,12 +163,17 @@ job_bench() {
 	build test || return
 	build bench && check "benchmarks" "$logs/bench.log" tests/bench.sh build/test
 }
+job_slurm() {
+	build test || return
+	scripts/setup.sh slurm >"$logs/setup-slurm.log" 2>&1 || true
+	check "shards on Slurm" "$logs/slurm.log" tests/slurm.sh build/test
+}
 job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECONDS=12 fuzz; }
 
 test_flags=(CFLAGS="-O3 -g -Werror")
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
-if wanted unit cli install python valgrind stress faults pinned bench; then prepare test "${test_build[@]}" all tests; fi
+if wanted unit cli install python valgrind stress faults pinned bench slurm; then prepare test "${test_build[@]}" all tests; fi
 if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
 if wanted pinned; then prepare pinned "${test_build[@]}" build/test/tests/pinned; fi
 if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi

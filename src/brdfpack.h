@@ -190,11 +190,13 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
  * They are finite, not negative, and the same when wi and wo change places.
  *
  * Convention of the table. Cell (i, j, k) starts at theta_h = (i/H)^2 pi/2, theta_d = (j/D) pi/2,
- * phi_d = (k/P) pi (Rusinkiewicz 1998), and a stored value belongs to that LOWER CORNER of its cell.
- * Interpolation is trilinear on the corners, periodic in phi_d (period pi: reciprocity); beyond the last
- * corner of theta_h and theta_d its value stays. Cells that nothing was measured in hold the model's smooth
- * continuation, so near the horizon no "not measured" mark enters. Where wi = wo, phi_d is 0; where theta_h
- * is 0, phi_h is.
+ * phi_d = (k/P) pi (Rusinkiewicz 1998), and a stored value stands for its CENTRE, which is at the same for
+ * i + 1/2, j + 1/2, k + 1/2. The MERL database itself says so: both cosines above -0.061 at the centre is the
+ * pattern of its measured cells, but for 2 of 1,458,000, and the pattern is symmetric under k -> P - 1 - k.
+ * Interpolation is trilinear between centres in i, j and k, periodic in phi_d (period pi: reciprocity); before
+ * the first and beyond the last centre of theta_h and theta_d the value stays. Cells that nothing was measured
+ * in hold the model's smooth continuation, so near the horizon no "not measured" mark enters. Where wi = wo,
+ * phi_d is 0; where theta_h is 0, phi_h is.
  */
 typedef struct bp_material bp_material;
 
@@ -202,9 +204,9 @@ typedef struct bp_material bp_material;
 typedef enum bp_form {
 	BP_FORM_EXPANDED = 0, /* 16 bits per value, relative error at most 2^-11 of the decoded value; 8.8 MB / 2.9 MB */
 	BP_FORM_COMPACT = 1,  /* 8 bits per value, shared scales and colours: some 0.001 in log RMSE more, 0.01 where channels end at 0; 2.6 MB / 2.0 MB */
-	BP_FORM_PREVIEW = 2   /* expanded, but only every second corner along each axis, and quicker to load: for a look, with the
-	                         first layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an extent of the
-	                         lattice is odd, all corners are loaded */
+	BP_FORM_PREVIEW = 2   /* expanded, but only every second value along each axis, each where it stands, and quicker to load: for a
+	                         look, with the first layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an
+	                         extent of the lattice is odd, all values are loaded */
 } bp_form;
 
 typedef enum bp_colour {
@@ -250,7 +252,7 @@ bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_
 /* f(wi, wo), interpolated. An unusable direction gives 0. */
 void bp_material_evaluate(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
 
-/* f of the cell into which the directions fall, as the MERL database's own look-up gives it. */
+/* f of the cell into which the directions fall, as the MERL database's own look-up gives it; of a preview, of the first of two cells along each axis. */
 void bp_material_nearest(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
 
 /*

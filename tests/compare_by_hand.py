@@ -73,9 +73,10 @@ def coordinates(dims, normal, light):
     return math.sqrt(theta_h / (math.pi / 2)) * dims[0], theta_d / (math.pi / 2) * dims[1], phi_d / math.pi * dims[2]
 
 
-def corners(dims, at):
-    """Cells and weights of a trilinear look-up."""
+def neighbours(dims, at):
+    """Cells and weights of a trilinear look-up between the cells' centres."""
     found = []
+    at = max(at[0] - 0.5, 0), max(at[1] - 0.5, 0), (at[2] - 0.5) % dims[2]
     i, j, k = (int(x) for x in at)
     for di, dj, dk in [(a, b, c) for a in (0, 1) for b in (0, 1) for c in (0, 1)]:
         weight = 1.0
@@ -99,7 +100,7 @@ def spheres(dims, size, lights_at, tables):
                 cosine = dot(normal, light)
                 if cosine <= 1e-3:
                     continue
-                for cell, share in corners(dims, coordinates(dims, normal, light)):
+                for cell, share in neighbours(dims, coordinates(dims, normal, light)):
                     for total, table in zip(sums, tables):
                         for c in range(3):
                             total[c] += share * cosine * weight * table[c][cell]
@@ -113,9 +114,13 @@ def srgb(x):
     return 12.92 * x if x <= 0.0031308 else 1.055 * x ** (1 / 2.4) - 0.055
 
 
-def psnr(reference, estimate):
+def exposure_of(reference):
     means = sorted(sum(p) / 3 for p in reference)
-    exposure = 0.9 / max(1e-12, means[int(0.9 * len(means))])
+    return 0.9 / max(1e-12, means[int(0.9 * len(means))])
+
+
+def psnr(reference, estimate):
+    exposure = exposure_of(reference)
     real = whole = 0.0
     for p, q in zip(reference, estimate):
         for a, b in zip(p, q):
@@ -124,6 +129,21 @@ def psnr(reference, estimate):
             whole += (math.floor(255 * a + 0.5) - math.floor(255 * b + 0.5)) ** 2
     terms = 3 * len(reference)
     return 10 * math.log10(255**2 / max(1e-6, whole / terms)), 10 * math.log10(1 / max(1e-12, real / terms))
+
+
+def itp(rgb):
+    """ITU-R BT.2100's I, C_T / 2 and C_P of sRGB's primaries in 0 .. 1, white at 100 cd/m^2."""
+    wide = [100 * dot(row, rgb) for row in ((0.6274, 0.3293, 0.0433), (0.0691, 0.9195, 0.0114), (0.0164, 0.0880, 0.8956))]
+    powers = [(dot(row, wide) / 4096 / 10000) ** (2610 / 16384) for row in ((1688, 2146, 262), (683, 2951, 462), (99, 309, 3688))]
+    l, m, s = (((3424 / 4096 + 2413 / 128 * y) / (1 + 2392 / 128 * y)) ** (2523 / 32) for y in powers)
+    return (l + m) / 2, (6610 * l - 13613 * m + 7003 * s) / 8192, (17933 * l - 17390 * m - 543 * s) / 4096
+
+
+def delta_itp(reference, estimate):
+    """The mean of ITU-R BT.2124's colour difference over the pixels, exposed and cut as for the PSNR."""
+    exposure = exposure_of(reference)
+    differences = [720 * math.dist(*(itp([min(1, max(0, x * exposure)) for x in p]) for p in pair)) for pair in zip(reference, estimate)]
+    return sum(differences) / len(differences)
 
 
 def table_figures(dims, measured, decoded, valid):
@@ -156,6 +176,7 @@ def main(decoded_path, measured_path, size):
     for name, lights_at in (("key", key), ("env", env), ("point", point)):
         images = spheres(dims, size, lights_at, (measured, decoded))
         expected["psnr8_" + name], expected["psnr_" + name] = psnr(*images)
+        expected["delta_itp_" + name] = delta_itp(*images)
     expected["log_rmse"], expected["cube_root_rmse"], expected["largest_relative"] = table_figures(dims, measured, decoded, valid)
     wrong = 0
     for name, value in expected.items():

@@ -48,6 +48,8 @@ static void a_uniform_error_shows_in_every_figure_as_expected(void **state)
 		/* at the 90th percentile sRGB(0.99) - sRGB(0.9) = 0.0410: 27.7 dB; darker pixels differ less, brighter ones are cut */
 		assert_true(comparison.psnr[l].real > 27.7 && comparison.psnr[l].real < 40);
 		assert_true(fabs(comparison.psnr[l].eight_bit - comparison.psnr[l].real) < 1);
+		/* grey, 10 % brighter: 720 (q(99) - q(90)) = 6.86 there; less in darker pixels, and in brighter ones, which are cut */
+		assert_true(comparison.itp[l] > 3 && comparison.itp[l] < 6.9);
 		assert_int_equal(pictures[l].width, 36);
 		picture_free(&pictures[l]);
 	}
@@ -67,6 +69,7 @@ static void equal_tables_reach_the_caps(void **state)
 	tables_make(1, &lattice, &table);
 	assert_int_equal(comparison_measure(&plans, &lattice, &table, &comparison, NULL, &error), BP_OK);
 	assert_true(comparison.psnr[LIGHTING_KEY].real > 119.9 && comparison.psnr[LIGHTING_ENV].real == 0);
+	assert_true(comparison.itp[LIGHTING_KEY] == 0);
 	assert_true(comparison.fidelity.log_rmse == 0 && comparison.worst.value == 0);
 	comparison_plans_free(&plans);
 	lattice_free(&lattice);

@@ -65,9 +65,9 @@ static void clean_tables_are_positive_finite_and_reciprocal(void **state)
 		assert_int_equal(demo_generate(m, SMALL, true, &lattice, NULL), BP_OK);
 		for (uint32_t i = 0; i < SMALL.theta_h; i++)
 			for (uint32_t j = 0; j < SMALL.theta_d; j++)
-				for (uint32_t k = 1; k < SMALL.phi_d; k++) {
+				for (uint32_t k = 0; k < SMALL.phi_d; k++) {
 					/* isotropy mirrors phi_d -> -phi_d, and reciprocity adds pi: together pi - phi_d */
-					const size_t n = lattice_index(SMALL, i, j, k), mirror = lattice_index(SMALL, i, j, SMALL.phi_d - k);
+					const size_t n = lattice_index(SMALL, i, j, k), mirror = lattice_index(SMALL, i, j, SMALL.phi_d - 1 - k);
 					if (!lattice.valid[n] || !lattice.valid[mirror])
 						continue;
 					for (int c = 0; c < 3; c++) {
@@ -79,7 +79,7 @@ static void clean_tables_are_positive_finite_and_reciprocal(void **state)
 	}
 }
 
-/* Light that leaves in all directions for light from theta_o: h and d from vectors by libm, the table read at the nearest corner. */
+/* Light that leaves in all directions for light from theta_o: h and d from vectors by libm, the table read in the cell. */
 static double albedo(const struct lattice *lattice, int channel, double theta_o)
 {
 	const struct lattice_dims dims = lattice->dims;
@@ -98,9 +98,9 @@ static double albedo(const struct lattice *lattice, int channel, double theta_o)
 			/* cos pd from cos theta_i = cos td cos th - sin td cos pd sin th */
 			const double sin_d = sqrt(fmax(0, 1 - cos_d * cos_d)), denominator = sin_d * sin(theta);
 			const double cos_p = denominator > 1e-12 ? fmax(-1, fmin(1, (cos_d * hz - iz) / denominator)) : 0;
-			const uint32_t i = (uint32_t)fmin(u * dims.theta_h + 0.5, dims.theta_h - 1);
-			const uint32_t j = (uint32_t)fmin(acos(fmin(1, cos_d)) / M_PI_2 * dims.theta_d + 0.5, dims.theta_d - 1);
-			const uint32_t k = (uint32_t)(acos(cos_p) / M_PI * dims.phi_d + 0.5) % dims.phi_d;
+			const uint32_t i = (uint32_t)fmin(u * dims.theta_h, dims.theta_h - 1);
+			const uint32_t j = (uint32_t)fmin(acos(fmin(1, cos_d)) / M_PI_2 * dims.theta_d, dims.theta_d - 1);
+			const uint32_t k = (uint32_t)fmin(acos(cos_p) / M_PI * dims.phi_d, dims.phi_d - 1);
 			const size_t n = lattice_index(dims, i, j, k);
 			if (lattice->valid[n])
 				sum += lattice->rgb[channel][n] * iz * 4 * cos_d * sin(theta) * (2 * u * M_PI_2 / steps) * (2 * M_PI / steps);

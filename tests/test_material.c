@@ -109,7 +109,7 @@ static void a_loaded_material_gives_what_its_decoded_table_gives(void **state)
 	bp_archive_close(archive);
 }
 
-static void a_preview_is_the_same_material_on_fewer_corners(void **state)
+static void a_preview_is_the_same_material_of_fewer_values(void **state)
 {
 	(void)state;
 	bp_archive *archive = opened(); /* 12 x 10 x 24 */
@@ -342,7 +342,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_loaded_material_gives_what_its_decoded_table_gives),
-		cmocka_unit_test(a_preview_is_the_same_material_on_fewer_corners),
+		cmocka_unit_test(a_preview_is_the_same_material_of_fewer_values),
 		cmocka_unit_test(options_decide_what_is_there_and_it_says_so),
 		cmocka_unit_test(options_out_of_range_are_refused),
 		cmocka_unit_test(opening_and_loading_read_little_more_than_the_record),

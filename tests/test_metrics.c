@@ -111,13 +111,13 @@ static void the_worst_cell_is_found_and_invalid_ones_are_passed_over(void **stat
 	metrics_worst_cell(&lattice, &expansion, &worst);
 	assert_true(near(worst.value, 3 / 1.01, 1e-6) && worst.channel == 2);
 	assert_int_equal(worst.i * 100 + worst.j * 10 + worst.k, 213);
-	/* (2/4)^2 90, 1/4 90, 3/4 180 degrees */
-	assert_true(worst.theta_h == 22.5 && worst.theta_d == 22.5 && worst.phi_d == 135);
+	/* (2.5/4)^2 90, 1.5/4 90, 3.5/4 180 degrees */
+	assert_true(worst.theta_h == 35.15625 && worst.theta_d == 33.75 && worst.phi_d == 157.5);
 	expansion_free(&expansion);
 	lattice_free(&lattice);
 }
 
-/* Fills a lattice with f(theta_h, theta_d, phi_d) at the lower corners, G half and B a quarter of R, and measures it. */
+/* Fills a lattice with f(theta_h, theta_d, phi_d) at the centres, G half and B a quarter of R, and measures it. */
 static void energy_of(struct lattice_dims dims, double (*f)(double, double, double), bool some_invalid, struct energy *energy)
 {
 	bp_error error;
@@ -129,8 +129,8 @@ static void energy_of(struct lattice_dims dims, double (*f)(double, double, doub
 		for (uint32_t j = 0; j < dims.theta_d; j++)
 			for (uint32_t k = 0; k < dims.phi_d; k++) {
 				size_t n = lattice_index(dims, i, j, k);
-				double root = (double)i / dims.theta_h;
-				double value = f(root * root * M_PI_2, j * M_PI_2 / dims.theta_d, k * M_PI / dims.phi_d);
+				double root = (i + 0.5) / dims.theta_h;
+				double value = f(root * root * M_PI_2, (j + 0.5) * M_PI_2 / dims.theta_d, (k + 0.5) * M_PI / dims.phi_d);
 				for (int c = 0; c < 3; c++)
 					lattice.rgb[c][n] = value / (1 << c);
 				if (some_invalid && j % 2)

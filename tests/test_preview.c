@@ -6,7 +6,7 @@
 #include "model/model.h"
 #include "packed_fixture.h"
 
-static void a_preview_holds_every_second_corner(void **state)
+static void a_preview_holds_every_second_value(void **state)
 {
 	(void)state;
 	const enum profile profiles[] = {PROFILE_PAPER, PROFILE_SPECTRAL};
@@ -164,7 +164,7 @@ static void pairs_that_are_independent_are_neither_stored_nor_read(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_preview_holds_every_second_corner),
+		cmocka_unit_test(a_preview_holds_every_second_value),
 		cmocka_unit_test(a_preview_of_one_in_a_hundred_reads_at_most_24_KiB_and_all_of_it_16_KiB_more_than_its_record),
 		cmocka_unit_test(pairs_that_are_independent_are_neither_stored_nor_read),
 	};

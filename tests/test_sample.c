@@ -5,7 +5,7 @@
 
 enum kind { MATTE, SATIN, GLOSSY, MIRROR, RETRO, SHEEN, ASYMMETRIC, KINDS };
 
-/* f at a lattice corner; the asymmetric one is not mirror-symmetric about the plane of wo. */
+/* f at the centre of a cell; the asymmetric one is not mirror-symmetric about the plane of wo. */
 static double kind_value(enum kind kind, double theta_h, double theta_d, double phi_d, int c)
 {
 	double fresnel = pow(1 - cos(theta_d), 5);
@@ -30,8 +30,8 @@ static struct material make(enum kind kind, struct lattice_dims dims)
 		for (uint32_t j = 0; j < dims.theta_d; j++)
 			for (uint32_t k = 0; k < dims.phi_d; k++)
 				for (int c = 0; c < 3; c++) {
-					double h = (double)i / dims.theta_h;
-					e.rgb[c][lattice_index(dims, i, j, k)] = (float)kind_value(kind, h * h * M_PI_2, (double)j / dims.theta_d * M_PI_2, (double)k / dims.phi_d * M_PI, c);
+					double h = (i + 0.5) / dims.theta_h, d = (j + 0.5) / dims.theta_d, p = (k + 0.5) / dims.phi_d;
+					e.rgb[c][lattice_index(dims, i, j, k)] = (float)kind_value(kind, h * h * M_PI_2, d * M_PI_2, p * M_PI, c);
 				}
 	assert_int_equal(table_build(&e, TABLE_EXPANDED, 3, &m.table, NULL), BP_OK);
 	assert_int_equal(sampler_build(m.table, &m.sampler, NULL), BP_OK);

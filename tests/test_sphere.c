@@ -29,17 +29,17 @@ static void textbook_coordinates(struct lattice_dims dims, const double i[3], co
 static double textbook_look_up(const struct lattice *lattice, const double at[3], int c)
 {
 	struct lattice_dims d = lattice->dims;
-	double sum = 0;
-	for (uint32_t corner = 0; corner < 8; corner++) {
-		uint32_t i = (uint32_t)at[0], j = (uint32_t)at[1], k = (uint32_t)at[2];
-		double a = at[0] - i, b = at[1] - j, p = at[2] - k;
-		double w = (corner & 1 ? a : 1 - a) * (corner & 2 ? b : 1 - b) * (corner & 4 ? p : 1 - p);
-		i += corner & 1;
-		j += (corner & 2) >> 1;
-		k = (k + (corner >> 2)) % d.phi_d;
-		i = i < d.theta_h ? i : d.theta_h - 1;
-		j = j < d.theta_d ? j : d.theta_d - 1;
-		sum += w * lattice->rgb[c][lattice_index(d, i, j, k)];
+	/* from the first centre on; before it, and beyond the last one, the value stays */
+	double h = fmin(fmax(at[0] - 0.5, 0), d.theta_h - 1), t = fmin(fmax(at[1] - 0.5, 0), d.theta_d - 1), sum = 0;
+	double p = fmod(at[2] - 0.5 + d.phi_d, d.phi_d);
+	for (uint32_t neighbour = 0; neighbour < 8; neighbour++) {
+		uint32_t i = (uint32_t)h, j = (uint32_t)t, k = (uint32_t)p;
+		double w = (neighbour & 1 ? h - i : 1 - (h - i)) * (neighbour & 2 ? t - j : 1 - (t - j)) * (neighbour & 4 ? p - k : 1 - (p - k));
+		i += neighbour & 1;
+		j += (neighbour & 2) >> 1;
+		k = (k + (neighbour >> 2)) % d.phi_d;
+		if (w > 0)
+			sum += w * lattice->rgb[c][lattice_index(d, i, j, k)];
 	}
 	return sum;
 }
@@ -158,15 +158,16 @@ static void places_agree_with_inverse_trigonometric_functions(void **state)
 		struct place place = place_make(angles, LATTICE_MERL, cos_h, cos_d, (i[1] * h[0] - i[0] * h[1]) / s,
 		                                cos_d * cos_h - i[2], 1);
 		double cell_i = place.cell / 181 % 91 + place.theta_h / 65535.0, cell_j = place.cell / 181 / 91 + place.theta_d / 65535.0;
-		double cell_k = place.cell % 181 + place.phi_d / 65535.0, around = fabs(cell_k - at[2]);
-		assert_true(fabs(cell_i - at[0]) < 2e-5);
-		assert_true(fabs(cell_j - at[1]) < 2e-5);
+		double cell_k = place.cell % 181 + place.phi_d / 65535.0, around = fabs(cell_k + 0.5 - at[2]);
+		/* counted from the first centre; beyond the last one there is a copy, which place_make may lean on */
+		assert_true(fabs(cell_i - fmax(at[0] - 0.5, 0)) < 2e-5);
+		assert_true(fabs(cell_j - fmax(at[1] - 0.5, 0)) < 2e-5);
 		assert_true(fmin(around, 180 - around) < 2e-5);
 	}
 	free(angles);
 }
 
-static void phi_d_is_periodic_and_the_far_ends_are_clamped(void **state)
+static void phi_d_is_periodic_and_the_ends_are_clamped(void **state)
 {
 	(void)state;
 	bp_error error;
@@ -175,7 +176,7 @@ static void phi_d_is_periodic_and_the_far_ends_are_clamped(void **state)
 	struct angle_tables *angles = angle_tables_make();
 	assert_non_null(angles);
 	assert_int_equal(lattice_alloc(SMALL, &lattice, &error), BP_OK);
-	/* R = 1 where phi_d = 0; G = i, the cell along theta_h; B = j, along theta_d */
+	/* R = 1 in the first cell of phi_d; G = i, the cell along theta_h; B = j, along theta_d */
 	for (size_t n = 0; n < lattice_cells(SMALL); n++) {
 		lattice.rgb[0][n] = n % 6 == 0;
 		lattice.rgb[1][n] = (double)(n / 30);
@@ -184,9 +185,13 @@ static void phi_d_is_periodic_and_the_far_ends_are_clamped(void **state)
 	lattice_validate(&lattice);
 	assert_int_equal(lookup_table_measured(&lattice, &table, &error), BP_OK);
 
-	/* phi_d a quarter cell before pi: 5.75 of 6 cells, so cell 0 has weight 3/4 */
+	/* phi_d a quarter cell before pi: 5.75 of 6 cells, a quarter of the way from the last centre to the first */
 	double phi = M_PI * 5.75 / 6;
 	struct place place = place_make(angles, SMALL, 1, 1, sin(phi), cos(phi), 1);
+	assert_true(fabs((double)place_look_up(&place, &table)[0] - 0.25) < 1e-4);
+	/* a quarter cell after 0: three quarters of that way */
+	phi = M_PI * 0.25 / 6;
+	place = place_make(angles, SMALL, 1, 1, sin(phi), cos(phi), 1);
 	assert_true(fabs((double)place_look_up(&place, &table)[0] - 0.75) < 1e-4);
 	/* the same direction, named by the opposite angle */
 	place = place_make(angles, SMALL, 1, 1, -sin(phi), -cos(phi), 2);
@@ -195,9 +200,17 @@ static void phi_d_is_periodic_and_the_far_ends_are_clamped(void **state)
 	place = place_make(angles, SMALL, 0, 0, 0, 1, 1);
 	float4 value = place_look_up(&place, &table);
 	assert_true(fabs((double)value[1] - 3) < 1e-5 && fabs((double)value[2] - 4) < 1e-5);
-	place = place_make(angles, SMALL, cos(M_PI_2 * 2.5 * 2.5 / 16), cos(M_PI_2 * 3.5 / 5), 0, 1, 1);
+	/* three cells of four and four of five along: half-way between centres 2 and 3, 3 and 4 */
+	place = place_make(angles, SMALL, cos(M_PI_2 * 3 * 3 / 16), cos(M_PI_2 * 4 / 5), 0, 1, 1);
 	value = place_look_up(&place, &table);
 	assert_true(fabs((double)value[1] - 2.5) < 1e-4 && fabs((double)value[2] - 3.5) < 1e-4);
+	/* theta_h = theta_d = 0, and half-way to the first centres: the first cells */
+	place = place_make(angles, SMALL, 1, 1, 0, 1, 1);
+	value = place_look_up(&place, &table);
+	assert_true(value[1] == 0 && value[2] == 0);
+	place = place_make(angles, SMALL, cos(M_PI_2 * 0.25 * 0.25 / 16), cos(M_PI_2 * 0.25 / 5), 0, 1, 1);
+	value = place_look_up(&place, &table);
+	assert_true(value[1] == 0 && value[2] == 0);
 	free(angles);
 	lookup_table_free(&table);
 	lattice_free(&lattice);
@@ -312,7 +325,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_sphere_agrees_with_the_textbook_under_every_lighting),
 		cmocka_unit_test(places_agree_with_inverse_trigonometric_functions),
-		cmocka_unit_test(phi_d_is_periodic_and_the_far_ends_are_clamped),
+		cmocka_unit_test(phi_d_is_periodic_and_the_ends_are_clamped),
 		cmocka_unit_test(invalid_cells_are_black_in_both_tables),
 		cmocka_unit_test(values_of_any_magnitude_render_finite),
 		cmocka_unit_test(a_band_of_rows_gives_the_rows_of_the_whole),

@@ -1,4 +1,4 @@
-/* Evaluation against a slow reference: trilinear on lower corners, in double, from the expansion itself. */
+/* Evaluation against a slow reference: trilinear between cell centres, in double, from the expansion itself. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -15,6 +15,7 @@
 #include "model/table/table.h"
 #include "model/math/kernels.h"
 #include "model/table/table_parts.h"
+#include "trilinear.h"
 
 static uint64_t state = 11;
 enum { COUNT = 200 };
@@ -52,27 +53,6 @@ static struct expansion smooth_material(struct lattice_dims dims, double unit)
 	return e;
 }
 
-static double corner(const struct expansion *e, int channel, uint32_t i, uint32_t j, uint32_t k)
-{
-	i = i < e->dims.theta_h ? i : e->dims.theta_h - 1;
-	j = j < e->dims.theta_d ? j : e->dims.theta_d - 1;
-	return (double)e->rgb[channel][lattice_index(e->dims, i, j, k % e->dims.phi_d)] * e->unit;
-}
-
-static double reference(const struct expansion *e, int channel, struct lattice_point at, int nearest)
-{
-	uint32_t i = (uint32_t)at.h, j = (uint32_t)at.d, k = (uint32_t)at.p;
-	i = i < e->dims.theta_h ? i : e->dims.theta_h - 1;
-	j = j < e->dims.theta_d ? j : e->dims.theta_d - 1;
-	if (nearest)
-		return corner(e, channel, i, j, k);
-	double h = (double)at.h - i, d = (double)at.d - j, p = (double)at.p - k, sum = 0;
-	for (uint32_t n = 0; n < 8; n++)
-		sum += (n & 1 ? h : 1 - h) * (n & 2 ? d : 1 - d) * (n & 4 ? p : 1 - p) *
-		       corner(e, channel, i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
-	return sum;
-}
-
 static void compare(const struct expansion *e, const struct table *table, int channels, int count, double relative, int edges)
 {
 	for (int n = 0; n < count; n++) {
@@ -91,10 +71,12 @@ static void compare(const struct expansion *e, const struct table *table, int ch
 		table_evaluate(table, wi, wo, rgb);
 		table_nearest(table, wi, wo, near);
 		for (int c = 0; c < 3; c++) {
-			double want = reference(e, c, at, 0), cell = reference(e, c, at, 1);
+			double want = trilinear(e, c, at, 0.5), cell = cell_value(e, c, (int)at.h, (int)at.d, (int)at.p);
 			if (channels == 1) {
-				want = (reference(e, 0, at, 0) + reference(e, 1, at, 0) + reference(e, 2, at, 0)) / 3;
-				cell = (reference(e, 0, at, 1) + reference(e, 1, at, 1) + reference(e, 2, at, 1)) / 3;
+				want = (trilinear(e, 0, at, 0.5) + trilinear(e, 1, at, 0.5) + trilinear(e, 2, at, 0.5)) / 3;
+				cell = 0;
+				for (int other = 0; other < 3; other++)
+					cell += cell_value(e, other, (int)at.h, (int)at.d, (int)at.p) / 3;
 			}
 			assert_true(fabs((double)rgb[c] - want) <= relative * want);
 			assert_true(fabs((double)near[c] - cell) <= relative * cell);
@@ -138,6 +120,55 @@ static void the_compact_form_keeps_a_smooth_material_to_half_a_percent(void **us
 		}
 		expansion_free(&e);
 	}
+}
+
+static bool values_at(const struct table *table, struct lattice_dims dims, double h, double d, double p, float rgb[3])
+{
+	float wi[3], wo[3];
+	bool above = directions_at(dims, h, d, p, wi, wo);
+	table_evaluate(table, wi, wo, rgb);
+	return above;
+}
+
+/* Values differ from cell to cell. */
+static void the_centre_of_a_cell_has_its_value_and_before_the_first_and_beyond_the_last_it_stays(void **user)
+{
+	(void)user;
+	const struct lattice_dims dims = {10, 9, 16};
+	struct expansion e;
+	assert_int_equal(expansion_alloc(dims, &e, NULL), BP_OK);
+	e.unit = 1;
+	for (size_t n = 0; n < lattice_cells(dims); n++)
+		e.rgb[0][n] = e.rgb[1][n] = e.rgb[2][n] = (float)(1 + uniform());
+	for (int form = 0; form < 2; form++) {
+		struct table *table = build(&e, (enum table_form)form, 3);
+		const double within = form ? 0.01 : 0x1p-10 + 1e-4;
+		int seen = 0;
+		for (uint32_t i = 0; i < dims.theta_h; i++)
+			for (uint32_t j = 0; j < dims.theta_d; j++)
+				for (uint32_t k = 0; k < dims.phi_d; k++) {
+					float rgb[3];
+					const double want = (double)e.rgb[1][lattice_index(dims, i, j, k)];
+					if (!values_at(table, dims, i + 0.5, j + 0.5, k + 0.5, rgb))
+						continue;
+					seen++;
+					assert_true(fabs((double)rgb[1] - want) < within);
+					if (i == 0 && values_at(table, dims, 0.3, j + 0.5, k + 0.5, rgb))
+						assert_true(fabs((double)rgb[1] - want) < within);
+					if (i + 1 == dims.theta_h && values_at(table, dims, i + 0.9, j + 0.5, k + 0.5, rgb))
+						assert_true(fabs((double)rgb[1] - want) < within);
+					if (j == 0 && values_at(table, dims, i + 0.5, 0.1, k + 0.5, rgb))
+						assert_true(fabs((double)rgb[1] - want) < within);
+					/* half-way between the last and the first phi_d, from either side */
+					const double first = (double)e.rgb[1][lattice_index(dims, i, j, 0)];
+					for (int side = 0; side < 2 && k + 1 == dims.phi_d; side++)
+						if (values_at(table, dims, i + 0.5, j + 0.5, side ? 1e-4 : k + 1 - 1e-4, rgb))
+							assert_true(fabs((double)rgb[1] - (want + first) / 2) < within);
+				}
+		assert_true(seen > 800);
+		table_free(table);
+	}
+	expansion_free(&e);
 }
 
 /* A hostile record's, found by fuzzing: the range of a channel's shares had no finite reciprocal. */
@@ -334,6 +365,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_expanded_form_keeps_every_value_to_2_to_the_minus_11),
 		cmocka_unit_test(the_compact_form_keeps_a_smooth_material_to_half_a_percent),
+		cmocka_unit_test(the_centre_of_a_cell_has_its_value_and_before_the_first_and_beyond_the_last_it_stays),
 		cmocka_unit_test(a_channel_that_is_next_to_nothing_leaves_the_others_alone),
 		cmocka_unit_test(tables_stay_within_their_memory),
 		cmocka_unit_test(a_batch_gives_the_same_bits_as_single_calls_at_any_count),

@@ -15,15 +15,47 @@ static uint32_t layers_wanted(const struct record_head *head, double max_log_rms
 	return head->layer_count;
 }
 
+/* What all shards of one build have in common, from the first record seen. */
+struct likeness {
+	bool known;
+	char name[RECORD_NAME_BYTES_MAX + 1];
+	const struct bp_archive *archive;
+	enum profile profile;
+	uint32_t codec_version;
+	struct fit_options options;
+};
+
+static bp_status likeness_check(struct likeness *first, const struct bp_archive *archive, const struct record_head *head, bp_error *error)
+{
+	if (!first->known) {
+		*first = (struct likeness){.known = true, .archive = archive, .profile = head->profile, .codec_version = head->codec_version, .options = head->options};
+		strcpy(first->name, head->name);
+		return BP_OK;
+	}
+	const char *what = head->profile != first->profile                             ? "profile"
+	                   : head->codec_version != first->codec_version               ? "codec version"
+	                   : head->options.budget_bytes != first->options.budget_bytes ? "budget"
+	                   : head->options.max_error != first->options.max_error       ? "bound of the error"
+	                   : head->options.effort != first->options.effort             ? "effort"
+	                                                                               : NULL;
+	return !what ? BP_OK
+	             : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: made with another %s than %s in %s: these are not shards of one build; build "
+	                         "them with the same program and options", head->name, what, first->name, archive_path(first->archive));
+}
+
 static bp_status record_copy(const struct bp_archive *archive, const struct index_entry *entry, const struct copy_options *options,
-                             struct archive_writer *writer, struct copy_totals *totals, bp_error *error)
+                             struct likeness *likeness, struct archive_writer *writer, struct copy_totals *totals, bp_error *error)
 {
 	struct record_head head;
 	uint8_t *record = NULL, *kept = NULL;
 	totals->reading = true;
 	bp_status status = archive_entry_record(archive, entry, &head, &record, error);
-	if (status)
+	if (!status && options->alike)
+		status = likeness_check(likeness, archive, &head, error);
+	if (status) {
+		free(record);
 		return status;
+	}
 	const uint32_t layers = layers_wanted(&head, options->max_log_rmse);
 	size_t bytes = head.record_bytes;
 	if (layers < head.layer_count)
@@ -75,7 +107,7 @@ bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index
 		status = archive_entry(archive, index ? index[n] : n, &leaf, &entry, error);
 		totals->reading = status != BP_OK;
 		if (!status)
-			status = record_copy(archive, &entry, options, writer, totals, error);
+			status = record_copy(archive, &entry, options, NULL, writer, totals, error);
 	}
 	return writer_end(writer, status, totals, error);
 }
@@ -83,48 +115,99 @@ bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index
 /* One input's place in the walk through all names. */
 struct input {
 	const struct bp_archive *archive;
-	uint64_t next, count; /* materials: entry is number next - 1, when it is `there` */
+	size_t number;
+	uint64_t next, count; /* materials: entry is number next - 1 */
 	struct index_page leaf;
 	struct index_entry entry;
-	bool there;
 };
 
-static bp_status input_advance(struct input *input, bp_error *error)
+/* The inputs that have a name left, as a heap: the first name at the top; of the same names, the first input's. */
+struct walk {
+	struct input **heap;
+	size_t count;
+	struct likeness likeness;
+};
+
+static bool input_before(const struct input *a, const struct input *b)
 {
-	input->there = input->next < input->count;
-	return input->there ? archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error) : BP_OK;
+	const int order = strcmp(a->entry.name, b->entry.name);
+	return order < 0 || (order == 0 && a->number < b->number);
+}
+
+static void walk_sink(struct walk *walk, size_t at)
+{
+	for (;;) {
+		size_t first = at;
+		for (size_t child = 2 * at + 1; child <= 2 * at + 2 && child < walk->count; child++)
+			if (input_before(walk->heap[child], walk->heap[first]))
+				first = child;
+		if (first == at)
+			return;
+		struct input *const swap = walk->heap[at];
+		walk->heap[at] = walk->heap[first];
+		walk->heap[first] = swap;
+		at = first;
+	}
+}
+
+/* The input at the top goes on to its next name, or leaves the heap. */
+static bp_status walk_advance(struct walk *walk, bp_error *error)
+{
+	struct input *input = walk->heap[0];
+	bp_status status = BP_OK;
+	if (input->next < input->count)
+		status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
+	else
+		walk->heap[0] = walk->heap[--walk->count];
+	if (!status)
+		walk_sink(walk, 0);
+	return status;
 }
 
 /* Copies the first name of all; where several have it, the last of them. */
-static bp_status first_copy(struct input *inputs, size_t count, size_t chosen, const struct copy_options *options,
-                            struct archive_writer *writer, struct copy_totals *totals, size_t *failed, bp_error *error)
+static bp_status first_copy(struct walk *walk, const struct copy_options *options, struct archive_writer *writer,
+                            struct copy_totals *totals, size_t *failed, bp_error *error)
 {
-	char name[RECORD_NAME_BYTES_MAX + 1];
-	size_t last = chosen;
-	bp_status status = BP_OK;
+	struct index_entry entry = walk->heap[0]->entry;
+	const struct input *last = walk->heap[0];
 
-	strcpy(name, inputs[chosen].entry.name);
-	for (size_t n = chosen + 1; n < count; n++) {
-		if (!inputs[n].there || strcmp(inputs[n].entry.name, name) != 0)
-			continue;
-		if (!options->replace) {
-			*failed = n;
-			totals->reading = true;
-			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: also in %s; with --replace the later one is taken", name,
-			                 archive_path(inputs[last].archive));
-		}
+	*failed = last->number;
+	totals->reading = true;
+	bp_status status = walk_advance(walk, error);
+	while (!status && walk->count && !strcmp(walk->heap[0]->entry.name, entry.name)) {
+		const struct bp_archive *const before = last->archive;
+		last = walk->heap[0];
+		*failed = last->number;
+		if (!options->replace)
+			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: also in %s; with --replace the later one is taken", entry.name,
+			                 archive_path(before));
+		entry = last->entry;
 		totals->replaced++;
-		last = n;
+		status = walk_advance(walk, error);
 	}
-	*failed = last;
-	status = record_copy(inputs[last].archive, &inputs[last].entry, options, writer, totals, error);
-	for (size_t n = chosen; n < count && !status; n++)
-		if (inputs[n].there && !strcmp(inputs[n].entry.name, name)) {
-			*failed = n;
-			status = input_advance(&inputs[n], error);
-			totals->reading = status != BP_OK;
-		}
-	return status;
+	return status ? status : record_copy(last->archive, &entry, options, &walk->likeness, writer, totals, error);
+}
+
+/* Every input at its first name. */
+static bp_status walk_start(const struct bp_archive *const *archives, size_t count, struct input *inputs, struct walk *walk, size_t *failed,
+                            bp_error *error)
+{
+	for (size_t n = 0; n < count; n++) {
+		struct input *input = &inputs[n];
+		input->archive = archives[n];
+		input->number = n;
+		input->count = bp_archive_count(archives[n]);
+		if (input->count == 0)
+			continue;
+		*failed = n;
+		bp_status status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
+		if (status)
+			return status;
+		walk->heap[walk->count++] = input;
+	}
+	for (size_t n = walk->count / 2; n-- > 0;)
+		walk_sink(walk, n);
+	return BP_OK;
 }
 
 bp_status archive_merge(const struct bp_archive *const *archives, size_t count, const struct copy_options *options,
@@ -132,32 +215,24 @@ bp_status archive_merge(const struct bp_archive *const *archives, size_t count, 
 {
 	struct archive_writer *writer = NULL;
 	struct input *inputs = calloc(count ? count : 1, sizeof *inputs);
+	struct walk walk = {.heap = calloc(count ? count : 1, sizeof *walk.heap)};
 	bp_status status = BP_OK;
 
 	*totals = (struct copy_totals){0};
 	*failed = 0;
-	if (!inputs)
-		return error_memory(error, count * sizeof *inputs);
-	for (size_t n = 0; n < count && !status; n++) {
-		inputs[n].archive = archives[n];
-		inputs[n].count = bp_archive_count(archives[n]);
-		*failed = n;
-		status = input_advance(&inputs[n], error);
+	if (!inputs || !walk.heap)
+		status = error_memory(error, count * sizeof *inputs);
+	if (!status) {
+		status = walk_start(archives, count, inputs, &walk, failed, error);
 		totals->reading = status != BP_OK;
 	}
 	if (!status)
 		status = archive_writer_open(options->output, &writer, error);
-	while (!status && !stop_asked(options, totals)) {
-		size_t first = count;
-		for (size_t n = 0; n < count; n++)
-			if (inputs[n].there && (first == count || strcmp(inputs[n].entry.name, inputs[first].entry.name) < 0))
-				first = n;
-		if (first == count)
-			break;
-		status = first_copy(inputs, count, first, options, writer, totals, failed, error);
-	}
+	while (!status && walk.count && !stop_asked(options, totals))
+		status = first_copy(&walk, options, writer, totals, failed, error);
 	if (writer)
 		status = writer_end(writer, status, totals, error);
+	free(walk.heap);
 	free(inputs);
 	return status;
 }

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "name.h"
+#include "bytes.h"
 #include "codec/record.h"
 #include "error.h"
 #include "index.h"
@@ -19,7 +19,7 @@ struct seen {
 	uint64_t offset;
 	uint32_t bytes;
 	bool intact;
-	char name[BP_NAME_BYTES_MAX + 1];
+	uint32_t name; /* where it begins in the scan's names */
 };
 
 struct scan {
@@ -29,7 +29,8 @@ struct scan {
 	recover_report_fn *report;
 	void *user;
 	struct seen *seen;
-	size_t count, capacity;
+	size_t count, capacity, record_count; /* records come before what only the index names, unless an archive stands behind another */
+	struct byte_buffer names;             /* each with its NUL: a million take some 10 MB, in fixed places they would take 256 */
 	uint8_t record[RECORD_BYTES_MAX]; /* the candidate; the scan is malloc'ed */
 };
 
@@ -68,10 +69,12 @@ static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, 
 		scan->seen = grown;
 		scan->capacity = capacity;
 	}
+	if (scan->names.count > UINT32_MAX - BP_NAME_BYTES_MAX - 1)
+		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: too many names to remember", scan->path);
 	entry = &scan->seen[scan->count++];
-	*entry = (struct seen){ .offset = offset, .bytes = bytes, .intact = intact };
-	memcpy(entry->name, name, strlen(name) + 1);
-	return BP_OK;
+	*entry = (struct seen){ .offset = offset, .bytes = bytes, .intact = intact, .name = (uint32_t)scan->names.count };
+	write_bytes(&scan->names, name, strlen(name) + 1);
+	return scan->names.failed ? error_memory(error, scan->names.count) : BP_OK;
 }
 
 /* A record at `offset`? *next is where to look on. */
@@ -90,7 +93,29 @@ static bp_status record_try(struct scan *scan, uint64_t offset, uint64_t *next, 
 	for (uint32_t i = 0; intact && i < head.section_count; i++)
 		intact = bytes_crc32(scan->record + head.sections[i].offset, head.sections[i].bytes) == head.sections[i].crc32;
 	*next = offset + (intact ? record_bytes : head_bytes);
+	if (scan->record_count == scan->count)
+		scan->record_count++;
 	return seen_add(scan, head.name, offset, record_bytes, intact, error);
+}
+
+static const char *seen_name(const struct scan *scan, const struct seen *seen)
+{
+	return (const char *)scan->names.bytes + seen->name;
+}
+
+/* Is the record that the index has at `offset` one that was found, intact and of that name? Records are found in the order of the file. */
+static bool record_found(const struct scan *scan, const struct index_entry *entry)
+{
+	size_t low = 0, high = scan->record_count;
+	while (low < high) {
+		const size_t middle = (low + high) / 2;
+		if (scan->seen[middle].offset < entry->offset)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low < scan->record_count && scan->seen[low].offset == entry->offset && scan->seen[low].intact &&
+	       !strcmp(seen_name(scan, &scan->seen[low]), entry->name);
 }
 
 /* A leaf of the index at `offset`? Its names are worth having, whatever became of the tree above it. */
@@ -109,6 +134,8 @@ static bp_status leaf_try(struct scan *scan, uint64_t offset, uint64_t *next, bp
 		struct index_entry entry;
 		bp_status status;
 		index_leaf_entry(&page, i, &entry);
+		if (record_found(scan, &entry))
+			continue;
 		status = seen_add(scan, entry.name, entry.offset, 0, false, error);
 		if (status)
 			return status;
@@ -150,13 +177,23 @@ static bp_status file_scan(struct scan *scan, bp_error *error)
 }
 
 /* By name; intact ones first, then in the file's order. */
-static int seen_compare(const void *a, const void *b)
+static int seen_compare(const void *a, const void *b, void *user)
 {
 	const struct seen *x = a, *y = b;
-	int order = name_compare(x->name, strlen(x->name), y->name, strlen(y->name));
+	int order = strcmp(seen_name(user, x), seen_name(user, y)); /* as name_compare: names hold no NUL */
 	if (order == 0)
 		order = (int)y->intact - (int)x->intact;
 	return order ? order : (x->offset > y->offset) - (x->offset < y->offset);
+}
+
+/* One archive's records are in order already; sorting takes memory. */
+static void seen_sort(struct scan *scan)
+{
+	for (size_t i = 1; i < scan->count; i++)
+		if (seen_compare(&scan->seen[i - 1], &scan->seen[i], scan) > 0) {
+			qsort_r(scan->seen, scan->count, sizeof *scan->seen, seen_compare, scan);
+			return;
+		}
 }
 
 static void scan_tell(const struct scan *scan, const char *name, uint64_t offset, const char *what)
@@ -172,12 +209,13 @@ static bp_status records_save(struct scan *scan, struct archive_writer *writer, 
 {
 	for (size_t i = 0, same; i < scan->count; i += same) {
 		const struct seen *first = &scan->seen[i];
+		const char *const name = seen_name(scan, first);
 		bp_status status;
-		for (same = 1; i + same < scan->count && strcmp(scan->seen[i + same].name, first->name) == 0; same++)
+		for (same = 1; i + same < scan->count && strcmp(seen_name(scan, &scan->seen[i + same]), name) == 0; same++)
 			if (scan->seen[i + same].intact)
-				scan_tell(scan, first->name, scan->seen[i + same].offset, "a second intact record of this name was not saved");
+				scan_tell(scan, name, scan->seen[i + same].offset, "a second intact record of this name was not saved");
 		if (!first->intact) {
-			scan_tell(scan, first->name, first->offset, "lost: its record is damaged");
+			scan_tell(scan, name, first->offset, "lost: its record is damaged");
 			out->lost++;
 			continue;
 		}
@@ -223,8 +261,7 @@ bp_status archive_recover(const char *damaged, const char *path, recover_report_
 		status = file_scan(scan, error);
 	if (status)
 		goto out;
-	if (scan->count > 0) /* qsort must not be given NULL */
-		qsort(scan->seen, scan->count, sizeof *scan->seen, seen_compare);
+	seen_sort(scan);
 	for (size_t i = 0; i < scan->count; i++)
 		any |= scan->seen[i].intact;
 	if (!any) {
@@ -245,6 +282,7 @@ out:
 	if (scan->fd >= 0)
 		close(scan->fd);
 	free(scan->seen);
+	byte_buffer_free(&scan->names);
 	free(scan);
 	return status;
 }

@@ -73,7 +73,7 @@ static double film_factor(double thickness, double wavelength, double sin_d)
 	return 0.55 + 0.45 * (quarter <= 1 ? cosine : -cosine);
 }
 
-/* What depends on theta_h alone. */
+/* What depends on theta_h alone; angles are those of cell centres. */
 struct half_terms {
 	double cosine, sine;
 	double lobe, lobe2, coat; /* distributions */
@@ -82,7 +82,7 @@ struct half_terms {
 static struct half_terms half_terms(const struct demo_material *m, struct lattice_dims dims, uint32_t i)
 {
 	struct half_terms t;
-	const double root = (double)i / dims.theta_h;
+	const double root = (i + 0.5) / dims.theta_h;
 	quarter_cos_sin(root * root, &t.cosine, &t.sine);
 	t.lobe = m->share * ggx_distribution(m->roughness, t.cosine);
 	t.lobe2 = (1 - m->share) * ggx_distribution(m->roughness2, t.cosine);
@@ -101,7 +101,7 @@ static struct difference_terms difference_terms(const struct demo_material *m, s
 {
 	static const double WAVELENGTH[3] = {650, 532, 450};
 	struct difference_terms t;
-	quarter_cos_sin((double)j / dims.theta_d, &t.cosine, &t.sine);
+	quarter_cos_sin((j + 0.5) / dims.theta_d, &t.cosine, &t.sine);
 	const double width2 = m->retro_width * m->retro_width, spread = 1 + t.sine * t.sine / width2;
 	for (int c = 0; c < 3; c++) {
 		const double film = m->film > 0 ? film_factor(m->film, WAVELENGTH[c], t.sine) : 1;
@@ -212,7 +212,7 @@ bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, stru
 	struct faults faults = {.amount = clean ? 0 : m->noise, .state = &state};
 	double cos_phi[LATTICE_EXTENT_MAX], sine;
 	for (uint32_t k = 0; k < dims.phi_d; k++) {
-		const double t = 2.0 * k / dims.phi_d;
+		const double t = (2.0 * k + 1) / dims.phi_d;
 		quarter_cos_sin(t <= 1 ? t : 2 - t, &cos_phi[k], &sine);
 		cos_phi[k] = t <= 1 ? cos_phi[k] : -cos_phi[k];
 	}
@@ -221,7 +221,7 @@ bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, stru
 		const struct half_terms h = half_terms(m, dims, i);
 		for (uint32_t j = 0; j < dims.theta_d; j++) {
 			const struct difference_terms d = difference_terms(m, dims, j);
-			faults_start_row(&faults, (double)j / dims.theta_d);
+			faults_start_row(&faults, (j + 0.5) / dims.theta_d);
 			for (uint32_t k = 0; k < dims.phi_d; k++, n++) {
 				double value[3];
 				bool read = !lattice.valid[n]; /* so far: below the horizon */

@@ -17,7 +17,8 @@
  * difference at 650, 532, 450 nm. All terms are reciprocal; what goes out is less than what came in.
  *
  * The instrument: streaks along phi_d, noise that grows beyond theta_d = 70 degrees, drop-outs beyond 80,
- * dark readings that come out negative, and the database's pattern of cells below the horizon.
+ * dark readings that come out negative, and the database's pattern of cells below the horizon. It measures at
+ * cell centres, as the database's did (lattice.h).
  */
 #ifndef MERL_DEMO_H
 #define MERL_DEMO_H

@@ -10,7 +10,7 @@
 /* Fidelity of a decoded table against the measured one, over valid cells and the three channels; see fidelity.h. */
 struct fidelity {
 	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) */
-	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller cosine at the corner */
+	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller cosine at the cell's lower corner */
 	double largest_relative; /* largest |e - b|/(b + 1e-2) */
 };
 

@@ -33,8 +33,9 @@ void model_free(struct model *model); /* NULL is allowed */
 bp_status model_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
 
 /*
- * Every second corner of the lattice along each axis, for a preview: corner i of H/2 is corner 2 i of H. The model's extents
- * must be even and at least 8; *out has been allocated with half of them. BP_ERROR_ARGUMENT otherwise.
+ * Every second value along each axis, for a preview: value i of H/2 is value 2 i of H, and stands where that stands, at 2 i + 1/2
+ * of H cells, which is i + 1/4 of H/2. The model's extents must be even and at least 8; *out has been allocated with half of
+ * them. BP_ERROR_ARGUMENT otherwise.
  */
 bp_status model_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error);
 bool model_has_half(struct lattice_dims dims, struct lattice_dims *half); /* sets *half where there is one */

@@ -1,4 +1,4 @@
-/* model_half.c: every second corner of a model's table, by the quick way where the profile has one. */
+/* model_half.c: every second value of a model's table, by the quick way where the profile has one. */
 #include "error.h"
 #include "model/spectral/spectral.h"
 #include "model.h"

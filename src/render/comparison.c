@@ -72,7 +72,8 @@ bp_status comparison_measure(struct comparison_plans *plans, const struct lattic
 		const struct lookup_table *tables[2] = {&measured, &decoded};
 		struct sphere_image *images[2] = {&plans->reference, &plans->estimate};
 		sphere_plan_render(plans->plans[l], tables, 2, images);
-		if ((status = metrics_psnr(images[0], images[1], &result.psnr[l], error)) != BP_OK)
+		if ((status = metrics_psnr(images[0], images[1], &result.psnr[l], error)) != BP_OK ||
+		    (status = itp_mean(images[0], images[1], &result.itp[l], error)) != BP_OK)
 			goto out;
 		if (pictures && (status = picture_compare(images[0], images[1], &pictures[l], error)) != BP_OK)
 			goto out;

@@ -6,6 +6,7 @@
 
 #include "model/fidelity.h"
 #include "energy.h"
+#include "itp.h"
 #include "metrics.h"
 #include "picture.h"
 
@@ -14,6 +15,7 @@ enum { LIGHTINGS_ALL = (1 << LIGHTING_COUNT) - 1 };
 
 struct comparison {
 	struct psnr psnr[LIGHTING_COUNT]; /* of the lightings that were asked for; 0 otherwise */
+	double itp[LIGHTING_COUNT];       /* mean dE ITP, likewise */
 	struct fidelity fidelity;
 	struct worst_cell worst;          /* where fidelity.largest_relative is */
 	struct energy measured, decoded;  /* both with invalid cells as 0 */

@@ -18,9 +18,10 @@ enum { PANEL = 180, PANEL_STEP = 216, PANEL_HEAD = 58, PANEL_FOOT = 52 };
 /* log2 of a density is shown from -SPAN to SPAN: a quarter to four. */
 static const double SPAN = 2;
 
-static double cell_degrees(struct lattice_dims dims, double cell)
+/* theta_h of a cell's centre */
+static double cell_degrees(struct lattice_dims dims, uint32_t cell)
 {
-	double root = cell / dims.theta_h;
+	double root = (cell + 0.5) / dims.theta_h;
 	return root * root * 90;
 }
 
@@ -112,7 +113,7 @@ static bp_status errors_draw(struct canvas *canvas, const struct figure *figure,
 			double decade = lines[l][i]; /* NaN interrupts the line; 0 lies on the axis */
 			if (!isnan(decade))
 				decade = fmin(high, fmax(low, decade > 0 ? log10(decade) : low));
-			points[i][0] = LEFT + (double)i / count * width;
+			points[i][0] = LEFT + (i + 0.5) / count * width;
 			points[i][1] = y0 + PLOT - (decade - low) / (high - low) * PLOT;
 		}
 		canvas_line(canvas, (const double(*)[2])points, count, 2, colours[l]);

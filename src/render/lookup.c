@@ -160,8 +160,8 @@ static double fold_phi(const struct angle_tables *angles, double y, double x)
 	return (y < 0) != (x < 0) && turn > 0 ? 1 - turn : turn;
 }
 
-/* Lower cell and fraction of coordinate `at` in [0, extent]; clamped: the fraction goes up to 1 in the last cell. */
-static uint32_t split_clamped(double at, uint32_t extent, uint16_t *fraction)
+/* Cell and fraction of a place `at` in [0, extent], counted from the first centre; beyond the last cell stands its copy. */
+static uint32_t split(double at, uint32_t extent, uint16_t *fraction)
 {
 	uint32_t cell = at < extent ? (uint32_t)at : extent - 1;
 	*fraction = (uint16_t)(lesser(1, at - cell) * 65535 + 0.5);
@@ -173,13 +173,13 @@ struct place place_make(const struct angle_tables *angles, struct lattice_dims d
 {
 	/* sin(theta/2) keeps its precision near 0, where the cosine has none */
 	double half_h = sqrt(greater(0, 1 - cos_theta_h) * 0.5), half_d = sqrt(greater(0, 1 - cos_theta_d) * 0.5);
-	double at_h = table_at(angles->root_theta, sqrt(half_h * M_SQRT2)) * dims.theta_h;
-	double at_d = table_at(angles->theta, half_d * M_SQRT2) * dims.theta_d;
-	double at_phi = fold_phi(angles, y, x) * dims.phi_d;
+	double at_h = table_at(angles->root_theta, sqrt(half_h * M_SQRT2)) * dims.theta_h - 0.5;
+	double at_d = table_at(angles->theta, half_d * M_SQRT2) * dims.theta_d - 0.5;
+	double at_phi = fold_phi(angles, y, x) * dims.phi_d - 0.5;
 	struct place place = {.gain = (float)gain};
-	uint32_t i = split_clamped(at_h, dims.theta_h, &place.theta_h);
-	uint32_t j = split_clamped(at_d, dims.theta_d, &place.theta_d);
-	uint32_t k = split_clamped(at_phi, dims.phi_d, &place.phi_d);
+	uint32_t i = split(greater(0, at_h), dims.theta_h, &place.theta_h);
+	uint32_t j = split(greater(0, at_d), dims.theta_d, &place.theta_d);
+	uint32_t k = split(at_phi < 0 ? at_phi + dims.phi_d : at_phi, dims.phi_d, &place.phi_d);
 	place.cell = k + (dims.phi_d + 1) * (i + (dims.theta_h + 1) * j);
 	return place;
 }

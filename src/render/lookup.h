@@ -5,8 +5,8 @@
  *
  *     H sqrt(theta_h/(pi/2))      D theta_d/(pi/2)      P phi_d/pi
  *
- * A stored value belongs to its cell's lower corner; phi_d is periodic, the other two are clamped at the
- * last cell. Where a direction pair looks does not depend on the material: *places* are made once and used
+ * A stored value stands for its cell's centre, 1/2 beyond its index; phi_d is periodic, the other two are clamped
+ * at the first and at the last centre. Where a direction pair looks does not depend on the material: *places* are made once and used
  * for every material.
  */
 #ifndef RENDER_LOOKUP_H
@@ -38,7 +38,7 @@ bp_status lookup_table_decoded(const struct expansion *table, const uint8_t *val
                                struct lookup_table *out, bp_error *error);
 void lookup_table_free(struct lookup_table *table); /* NULL and a zeroed struct are allowed */
 
-/* A place: the cell at the lower corner, fractions of the way to the upper one in 1/65535, and a factor. */
+/* A place: the cell whose centre is before it along each axis, fractions of the way to the next in 1/65535, and a factor. */
 struct place {
 	uint32_t cell; /* index into lookup_table.cells / 4 */
 	float gain;

@@ -46,7 +46,7 @@ void metrics_worst_cell(const struct lattice *truth, const struct expansion *tab
 		}
 	uint32_t k = (uint32_t)(worst % dims.phi_d), j = (uint32_t)(worst / dims.phi_d % dims.theta_d);
 	uint32_t i = (uint32_t)(worst / dims.phi_d / dims.theta_d);
-	double root = (double)i / dims.theta_h;
+	double root = (i + 0.5) / dims.theta_h;
 	*out = (struct worst_cell){.value = largest, .i = i, .j = j, .k = k, .channel = channel, .theta_h = root * root * 90,
-	                           .theta_d = 90.0 * j / dims.theta_d, .phi_d = 180.0 * k / dims.phi_d};
+	                           .theta_d = 90 * (j + 0.5) / dims.theta_d, .phi_d = 180 * (k + 0.5) / dims.phi_d};
 }

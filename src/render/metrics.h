@@ -28,7 +28,7 @@ bp_status metrics_psnr(const struct sphere_image *reference, const struct sphere
 /*
  * Where |e - b|/(b + 1e-2) is largest, over valid cells and the three channels; e decoded, b measured, in 1/sr
  * (the same figure as fidelity.largest_relative; offset as in the project's published figures). The first such cell
- * in storage order, channels R, G, B in turn. Angles in degrees, of the cell's lower corner. value 0 and cell 0 when
+ * in storage order, channels R, G, B in turn. Angles in degrees, of the cell's centre. value 0 and cell 0 when
  * the tables agree everywhere.
  */
 struct worst_cell {

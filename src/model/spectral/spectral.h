@@ -62,7 +62,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 /* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
 float spectral_most(double unit);
 bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error);
-/* Every second corner along each axis (extents even); *out has half the model's extents. Decoded models only. */
+/* Every second value along each axis (extents even); *out has half the model's extents. Decoded models only. */
 bp_status spectral_expand_half(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error);
 /*
  * The same, or with `half` the half, as 16-bit floats of table.h's expanded form in units of SPECTRAL_CODES_UNIT times the model's unit:

@@ -1,5 +1,5 @@
 /*
- * spectral_expand_half.c: every second corner of the table, without computing the others: what a preview needs.
+ * spectral_expand_half.c: every second value of the table, without computing the others: what a preview needs.
  *
  * A preview's layers use few harmonics of each field, so here the wavelets come first, on blocks of harmonics instead of
  * blocks of cells; then the cosines and exponentials, on a quarter and an eighth.

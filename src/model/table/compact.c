@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "error.h"
-#include "memory.h"
 #include "compact_row.h"
 #include "model/math/kernels.h"
 
@@ -33,18 +32,20 @@ static void places_fill(struct table *t)
 {
 	for (uint32_t k = 0; k < t->dims.phi_d; k++) {
 		uint32_t in = k % t->width, later = in >= t->half;
-		t->place[k] = (struct compact_place){
-			.block = (uint16_t)(k / t->width * 2 * t->block_bytes),
+		t->places[k + 1] = (struct table_place){
+			.offset = (uint16_t)(k / t->width * 2 * t->block_bytes),
 			.residual = (uint8_t)(COMPACT_RESIDUALS + in),
 			.share = (uint8_t)(COMPACT_SHARES + 3 * later),
 			.place = (float)(int32_t)(in - later * t->half) * t->half_reciprocal,
 		};
 	}
 	for (uint32_t j = 0; j < t->dims.theta_d; j++)
-		t->rows[j] = (struct compact_rows){
-			.offset = t->row * (j / 2) + j % 2 * t->block_bytes,
-			.step = j % 2 ? t->row - t->block_bytes : t->block_bytes,
-		};
+		t->rows[j + 1].offset = t->row * (j / 2) + j % 2 * t->block_bytes;
+	for (uint32_t i = 0; i < t->dims.theta_h; i++)
+		t->slices[i + 1].offset = t->slice * i;
+	table_places_close(t->places, t->dims.phi_d);
+	table_pairs_close(t->rows, t->dims.theta_d);
+	table_pairs_close(t->slices, t->dims.theta_h);
 }
 
 /* The shares' codes in 12 bits each, once their range over the whole table is known: low and high of R's and of B's. */
@@ -80,23 +81,22 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	t->block_bytes = t->channels == 3 ? COMPACT_BLOCK_RGB : COMPACT_BLOCK_MONO;
 	t->row = 2 * blocks * t->block_bytes;
 	t->slice = t->row * ((e->dims.theta_d + 1) / 2);
-	const size_t cells_bytes = ((size_t)e->dims.theta_h * t->slice + TABLE_SLACK_BYTES + 7) & ~(size_t)7;
-	t->store_bytes = cells_bytes + period * sizeof *t->place + e->dims.theta_d * sizeof *t->rows;
+	const size_t cells_bytes = (size_t)e->dims.theta_h * t->slice;
 
 	const uint32_t padded = blocks * t->width + 1, kept = 3 * blocks;
 	const size_t line = padded + CELLS_MAX; /* a row, and what a block's last vectors read past it */
 	size_t scratch_bytes = (4 * line + 2 * rows * kept) * sizeof(float);
 	float *scratch = malloc(scratch_bytes);
-	t->store = memory_alloc_kept(t->store_bytes);
-	if (!scratch || !t->store) {
+	if (!scratch)
+		return error_memory(error, scratch_bytes);
+	bp_status status = table_store_alloc(t, cells_bytes, error);
+	if (status) {
 		free(scratch);
-		return error_memory(error, scratch ? t->store_bytes : scratch_bytes);
+		return status;
 	}
 	float *const knots[2] = {scratch + 4 * line, scratch + 4 * line + rows * kept};
 	memset(scratch, 0, 4 * line * sizeof *scratch);
-	memset(t->store, 0, t->store_bytes);
-	t->place = (struct compact_place *)(void *)(t->store + cells_bytes);
-	t->rows = (struct compact_rows *)(void *)(t->place + period);
+	memset(t->store, 0, cells_bytes);
 	places_fill(t);
 
 	struct compact_rows_plan plan = {

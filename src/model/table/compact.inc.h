@@ -13,9 +13,9 @@ struct compact_view {
 
 static inline struct compact_view KERNEL(compact_look)(const struct table *t, const struct cell_x4 *cell)
 {
-	const struct compact_place *place = &t->place[cell->k];
-	const struct compact_rows *rows = &t->rows[cell->j];
-	const uint8_t *const first = t->store + rows->offset + place->block, *const a = first + (size_t)t->slice * cell->i, *const c = a + t->slice;
+	const struct table_place *place = &t->places[cell->k];
+	const struct table_pair *rows = &t->rows[cell->j], *slices = &t->slices[cell->i];
+	const uint8_t *const first = t->store + rows->offset + place->offset, *const a = first + slices->offset, *const c = a + slices->step;
 	f32x4 at = cell->beyond;
 	at[3] = place->place + cell->beyond[2] * t->half_reciprocal;
 	return (struct compact_view){a, a + rows->step, c, c + rows->step, place->residual, place->share, cell->h, at};
@@ -28,7 +28,8 @@ static inline struct lookup KERNEL(compact_find_many)(const struct table *t, str
 	uint32_t block = cell.k * t->width_reciprocal >> 16, in = cell.k - block * t->width, later = in >= t->half, odd = cell.j & 1;
 	return (struct lookup){
 		.offset = t->slice * cell.i + t->row * (cell.j >> 1) + (2 * block + odd) * t->block_bytes,
-		.step_d = odd ? t->row - t->block_bytes : t->block_bytes,
+		.step_h = t->slice & cell.has_h,
+		.step_d = (odd ? t->row - t->block_bytes : t->block_bytes) & cell.has_d,
 		.residual = COMPACT_RESIDUALS + in,
 		.share = COMPACT_SHARES + 3 * later,
 		.h = cell.h,
@@ -193,7 +194,7 @@ static inline void KERNEL(compact_mono_one)(const struct table *t, const struct 
 
 static inline void KERNEL(compact_mono_of_many)(const struct table *t, const struct lookup *l, float rgb[3])
 {
-	const uint8_t *const a = t->store + l->offset, *const c = a + t->slice;
+	const uint8_t *const a = t->store + l->offset, *const c = a + l->step_h;
 	const struct compact_view v = {a, a + l->step_d, c, c + l->step_d, l->residual, 0, {l->h, 0, 0, 0}, {0, l->d, l->p, 0}};
 	KERNEL(compact_mono)(t, &v, rgb);
 }
@@ -207,11 +208,11 @@ struct compact_gathered {
 static inline void KERNEL(compact_gather)(const struct table *t, const struct lookups *l, const struct lookups *next, struct compact_gathered *out)
 {
 	for (size_t m = 0; m < l->count; m++) {
-		KERNEL(fetch)(t, next, m, 1, true);
+		KERNEL(fetch)(t, next, m, 1);
 		const uint8_t *block[4] = {t->store + l->offset[m]};
 		const uint32_t residual = l->residual[m], share = l->share[m];
 		block[1] = block[0] + l->step_d[m];
-		block[2] = block[0] + t->slice;
+		block[2] = block[0] + l->step_h[m];
 		block[3] = block[2] + l->step_d[m];
 		for (int r = 0; r < 4; r++) {
 			out->head[r][m] = KERNEL(load32)(block[r]);
@@ -274,11 +275,14 @@ static inline void KERNEL(compact_rgb_values)(const struct table *t, const struc
 	}
 }
 
-TABLE_VALUES(compact_mono_values, KERNEL(compact_mono_of_many), 1, 1)
-TABLE_FORMS(compact_rgb, KERNEL(cell_h_last), KERNEL(compact_rgb_one), KERNEL(compact_find_many), KERNEL(compact_rgb_values), 1, 1)
-TABLE_FORMS(compact_mono, KERNEL(cell_h_last), KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_values), 1, 1)
+static const struct KERNEL(form) KERNEL(compact_rgb_form) = {
+	KERNEL(cell_h_last), KERNEL(compact_rgb_one), KERNEL(compact_find_many), NULL, KERNEL(compact_rgb_values), 1, true};
+static const struct KERNEL(form) KERNEL(compact_mono_form) = {
+	KERNEL(cell_h_last), KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_of_many), NULL, 1, true};
+FORM_ENTRIES(compact_rgb_form)
+FORM_ENTRIES(compact_mono_form)
 
 const struct table_kernels KERNEL(table_compact)[2] = {
-	{KERNEL(compact_mono_evaluate), KERNEL(compact_mono_nearest), KERNEL(compact_mono_batch)},
-	{KERNEL(compact_rgb_evaluate), KERNEL(compact_rgb_nearest), KERNEL(compact_rgb_batch)},
+	{KERNEL(compact_mono_form_evaluate), KERNEL(compact_mono_form_nearest), KERNEL(compact_mono_form_batch)},
+	{KERNEL(compact_rgb_form_evaluate), KERNEL(compact_rgb_form_nearest), KERNEL(compact_rgb_form_batch)},
 };

@@ -35,13 +35,21 @@ static float largest_value(const struct expansion *e)
 
 static bp_status expanded_alloc(struct table *t, bp_error *error)
 {
-	t->row = (t->dims.phi_d + 1) * (uint32_t)t->channels;
-	t->slice = t->row * t->dims.theta_d;
-	t->store_bytes = (size_t)t->row * t->dims.theta_h * t->dims.theta_d * sizeof(uint16_t) + TABLE_SLACK_BYTES;
-	t->store = memory_alloc_kept(t->store_bytes);
-	if (!t->store)
-		return error_memory(error, t->store_bytes);
-	memset(t->store + t->store_bytes - TABLE_SLACK_BYTES, 0, TABLE_SLACK_BYTES);
+	const struct lattice_dims d = t->dims;
+	t->row = (d.phi_d + 1) * (uint32_t)t->channels;
+	t->slice = t->row * d.theta_d;
+	bp_status status = table_store_alloc(t, (size_t)t->slice * d.theta_h * sizeof(uint16_t), error);
+	if (status)
+		return status;
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		t->slices[i + 1].offset = t->slice * i;
+	for (uint32_t j = 0; j < d.theta_d; j++)
+		t->rows[j + 1].offset = t->row * j;
+	for (uint32_t k = 0; k < d.phi_d; k++)
+		t->places[k + 1] = (struct table_place){.offset = (uint16_t)(k * (uint32_t)t->channels)};
+	table_pairs_close(t->slices, d.theta_h);
+	table_pairs_close(t->rows, d.theta_d);
+	table_places_close(t->places, d.phi_d);
 	return BP_OK;
 }
 
@@ -84,7 +92,7 @@ static bp_status expanded_fill(struct table *t, const struct expansion *e, float
 }
 
 /* Without its store. */
-static bp_status table_new(struct lattice_dims dims, enum table_form form, int channels, struct table **out, bp_error *error)
+static bp_status table_new(struct lattice_dims dims, bool half, enum table_form form, int channels, struct table **out, bp_error *error)
 {
 	struct table *t = calloc(1, sizeof *t);
 	if (!t)
@@ -93,8 +101,9 @@ static bp_status table_new(struct lattice_dims dims, enum table_form form, int c
 	t->channels = channels;
 	t->dims = dims;
 	t->scale = lattice_scale_of(t->dims);
-	t->top = (f32x4){(float)t->dims.theta_h - 1, (float)t->dims.theta_d - 1, (float)t->dims.phi_d, 0};
-	t->inner = t->top - (f32x4){0.5f, 0.5f, 0.5f, 0};
+	const float shift = 1 - (half ? CENTRE_OF_HALF : CENTRE);
+	t->shift = (f32x4){shift, shift, shift, 0};
+	t->last = (f32x4){(float)t->dims.theta_h - 0.5f, (float)t->dims.theta_d - 0.5f, (float)t->dims.phi_d, 0};
 	bool avx2 = kernels_avx2_usable();
 	if (form == TABLE_COMPACT)
 		t->kernels = (avx2 ? table_compact_avx2 : table_compact_plain)[channels == 3];
@@ -104,12 +113,14 @@ static bp_status table_new(struct lattice_dims dims, enum table_form form, int c
 	return BP_OK;
 }
 
-bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error)
+/* half: the expansion holds every second value of another. */
+static bp_status expansion_build(const struct expansion *expansion, bool half, enum table_form form, int channels, struct table **out,
+                                 bp_error *error)
 {
 	if (!lattice_dims_legal(expansion->dims) || (channels != 1 && channels != 3) || (form != TABLE_EXPANDED && form != TABLE_COMPACT))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no such form of table (form %d, %d channels)", (int)form, channels);
 	struct table *t = NULL;
-	bp_status status = table_new(expansion->dims, form, channels, &t, error);
+	bp_status status = table_new(expansion->dims, half, form, channels, &t, error);
 	if (status)
 		return status;
 	const float largest = largest_value(expansion);
@@ -122,6 +133,11 @@ bp_status table_build(const struct expansion *expansion, enum table_form form, i
 	return status;
 }
 
+bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error)
+{
+	return expansion_build(expansion, false, form, channels, out, error);
+}
+
 /* ---- from a model ---- */
 
 /* Straight from the fields: no table of floats in between, which would be twice the size. */
@@ -129,7 +145,7 @@ static bp_status codes_build(const struct model *model, uint32_t layers, struct 
                              bp_error *error)
 {
 	struct table *table = NULL;
-	bp_status status = table_new(dims, TABLE_EXPANDED, channels, &table, error);
+	bp_status status = table_new(dims, half, TABLE_EXPANDED, channels, &table, error);
 	if (status)
 		return status;
 	table->unit = (float)(model->spectral->unit * SPECTRAL_CODES_UNIT);
@@ -160,7 +176,7 @@ bp_status table_build_model(const struct model *model, bool half, enum table_for
 		return status;
 	status = (half ? model_expand_half : model_expand)(model, 0, &expansion, error);
 	if (!status)
-		status = table_build(&expansion, form, channels, out, error);
+		status = expansion_build(&expansion, half, form, channels, out, error);
 	expansion_free(&expansion);
 	return status;
 }

@@ -3,14 +3,16 @@
  *
  *     model_expand -> expansion -> table_build -> table_evaluate      or: model -> table_build_model -> table_evaluate
  *
- * A stored value belongs to its cell's LOWER CORNER. Interpolation is trilinear on the corners, in
- * 1/sr, periodic in phi_d; beyond the last corner of theta_h and theta_d the last value stays. The
- * expansion holds a value in every cell, also below the horizon, where it continues the material
- * smoothly, so no "not measured" mark enters an interpolation; directions below the horizon give 0.
+ * A stored value stands for its cell's CENTRE (merl/lattice.h). Interpolation is trilinear between
+ * centres, in 1/sr, periodic in phi_d; before the first and beyond the last centre of theta_h and
+ * theta_d the value stays. The expansion holds a value in every cell, also below the horizon, where
+ * it continues the material smoothly, so no "not measured" mark enters an interpolation; directions
+ * below the horizon give 0. A table of every second value keeps each where it stood: the centre of
+ * the first of two cells, a quarter into a cell of its own lattice.
  *
  * Expanded form: per cell and channel one unsigned 16-bit float, 6 exponent bits and 10 of mantissa:
  * relative error at most 2^-11 down to 2^-61 of the table's largest value, 0 below. Rows of phi_d
- * hold one cell more, a copy of the first. MERL, RGB: 8,796,616 bytes.
+ * hold one cell more, a copy of the first. MERL, RGB: 8.80 MB.
  *
  * Compact form: compact.h.
  */
@@ -31,7 +33,7 @@ struct table; /* immutable once built: any number of threads may evaluate it */
 /* channels: 3 (RGB), or 1: the mean of the three, given back in all of them. The expansion is not needed afterwards. */
 bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error);
 /*
- * The same of all of a model's layers, or, with `half`, of every second corner of it (model_expand_half), and quicker: of a decoded
+ * The same of all of a model's layers, or, with `half`, of every second value of it (model_expand_half), and quicker: of a decoded
  * spectral profile's expanded form no table of floats is made. BP_ERROR_ARGUMENT where there is no half.
  */
 bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error);

@@ -14,22 +14,29 @@ struct table_kernels {
 	void (*batch)(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);
 };
 
-/* Where the values of one phi_d stand. */
-struct compact_place {
-	uint16_t block;          /* bytes from the row's start to its block of an even theta_d */
-	uint8_t residual, share; /* bytes from the block's start */
-	float place;             /* of the cell's start, between the two share codes */
+/*
+ * Where the two neighbours of a point along one axis stand, by the point's coordinate in cells plus `shift`, cut off to a number:
+ * number n lies between values n - 1 and n. Before the first and after the last both neighbours are that one, so that the value
+ * stays; along phi_d they are the last and the first. Offsets count uint16_t in the expanded form, bytes in the compact one.
+ */
+struct table_pair { /* along theta_h or theta_d: */
+	uint32_t offset, step; /* to the first neighbour, and from there to the other */
+};
+struct table_place { /* along phi_d, where the other is the next: */
+	uint16_t offset;         /* within the row; compact: to its block of an even theta_d */
+	uint8_t residual, share; /* compact: bytes from the block's start */
+	float place;             /* compact: of the first neighbour, between the two share codes */
 };
 
-/* The rows of phi_d of one theta_d and of the next. */
-struct compact_rows {
-	uint32_t offset, step; /* bytes from the slice's start to the first one, and from there to the other */
-};
+/* Where the first value stands, in cells: at the centre of its own, or, in a table of every second value, of the first of the two that are one. */
+#define CENTRE 0.5f
+#define CENTRE_OF_HALF 0.25f
 
 struct table {
 	struct table_kernels kernels;
 	f32x4 scale;      /* lattice_scale_of */
-	f32x4 top, inner; /* the last corners (H - 1, D - 1, P, 0), and less by a half: inside the last cell that has a next one */
+	f32x4 shift;      /* 1 - where the first value stands */
+	f32x4 last;       /* inside the last cells of theta_h and theta_d, P, and 0 */
 	struct lattice_dims dims;
 	enum table_form form;
 	int channels;
@@ -40,12 +47,12 @@ struct table {
 	/* compact only */
 	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between share codes */
 	float half_reciprocal;
-	struct compact_place *place; /* of every phi_d, in the store after the cells */
-	struct compact_rows *rows;   /* of every theta_d, behind them */
 	/* (R, G, B, 0) in 1/sr = red sum times [0] + blue sum times [1] + sum of the means times [2]: of codes and means, with their weights */
 	f32x4 mix[3];
 
-	uint8_t *store; /* the cells, then TABLE_SLACK_BYTES that may be read and mean nothing */
+	uint8_t *store; /* the cells, TABLE_SLACK_BYTES that may be read and mean nothing, then: */
+	struct table_pair *slices, *rows; /* H + 1, D + 1 */
+	struct table_place *places;       /* P + 2: the last is the first value's own, for phi_d = P */
 	size_t store_bytes;
 };
 
@@ -53,6 +60,13 @@ enum { TABLE_SLACK_BYTES = 32 };
 
 /* [0]: one channel, [1]: RGB. */
 extern const struct table_kernels table_expanded_plain[2], table_expanded_avx2[2], table_compact_plain[2], table_compact_avx2[2];
+
+/* The store with so many bytes of cells, and slices, rows and places in it; nothing is set but the slack. */
+bp_status table_store_alloc(struct table *table, size_t cells_bytes, bp_error *error);
+/* pairs[n + 1].offset of values n = 0 to extent - 1 have been set: sets the rest. */
+void table_pairs_close(struct table_pair *pairs, uint32_t extent);
+/* places[k + 1] of values k = 0 to extent - 1 have been set: sets the rest. */
+void table_places_close(struct table_place *places, uint32_t extent);
 
 /* What brings values up to `largest` to [0, 1]; 0 for a table that is as good as all zero. */
 static inline float table_factor(float largest)

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Hands out the listed items in name order, then members of streams as they are read, until all results are in. */
+/* Hands out the listed items, then members of streams as they are read, until all results are in. */
 static void work(struct build *build)
 {
 	bool streams = build->sources.stream_count > 0, ready = false;
@@ -25,8 +25,8 @@ static void work(struct build *build)
 	while (build_goes_on(build)) {
 		outcomes_show_progress(build);
 		if (workers_idle(build->workers) && build->submitted < build->listed_count) {
-			struct job listed = {.number = build->submitted, .name = build->sources.items[build->submitted].name, .slot = -1};
-			build->submitted++;
+			const size_t number = build->order[build->submitted++];
+			struct job listed = {.number = number, .name = build->sources.items[number].name, .slot = -1};
 			workers_submit(build->workers, &listed);
 		} else if (workers_idle(build->workers) && ready) {
 			workers_submit(build->workers, &job);
@@ -48,7 +48,7 @@ static void missing_report(struct build *build)
 {
 	const bp_error error = {BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "listed, but not among the inputs"};
 	for (size_t i = 0; i < build->manifest.count; i++)
-		if (!build->manifest.entries[i].found) {
+		if (!build->manifest.entries[i].found && build_shard_has(build->options, build->manifest.entries[i].name)) {
 			report_error(build->options->manifest, build->manifest.entries[i].name, &error);
 			build->totals.missing++;
 		}
@@ -115,6 +115,12 @@ static bp_status previous_open(struct build *build, bp_error *error)
 	return bp_archive_open(build->options->output, &build->previous, error);
 }
 
+/* There are materials, but none falls to this shard: its archive has none, and is as good as any for the merge. */
+static bool shard_is_empty(const struct build *build)
+{
+	return build->options->shard_count > 1 && build->items.count == 0 && build->sources.unwanted_count > 0;
+}
+
 /* Everything up to the records in the spool. */
 static void build_prepare_and_work(struct build *build)
 {
@@ -132,7 +138,7 @@ static void build_prepare_and_work(struct build *build)
 	bool streams = build->sources.stream_count > 0;
 	if (!streams)
 		missing_report(build);
-	if ((build->items.count == 0 && !streams) || (build->options->strict && !totals_whole(&build->totals)))
+	if ((build->items.count == 0 && !streams && !shard_is_empty(build)) || (build->options->strict && !totals_whole(&build->totals)))
 		return;
 	if (output_refuse(options->output, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
 		build_stop(build, options->output, NULL, &error);
@@ -145,6 +151,8 @@ static void build_prepare_and_work(struct build *build)
 	unsigned count = options->workers;
 	if (!streams && count > build->items.count)
 		count = (unsigned)build->items.count;
+	if (count == 0) /* an empty shard */
+		return;
 	struct workers_options pool = {.count = count,
 	                               .slot_count = streams ? count + 1 : 0,
 	                               .work = build_work,
@@ -184,7 +192,7 @@ int build_run(const struct build_options *options)
 	bp_archive_close(build.previous);
 	container_close(build.stream);
 	bool whole = totals_whole(&build.totals);
-	if (build_goes_on(&build) && build.totals.packed > 0 && (whole || !options->strict)) {
+	if (build_goes_on(&build) && (build.totals.packed > 0 || shard_is_empty(&build)) && (whole || !options->strict)) {
 		if (archive_write(&build, &written, &error))
 			build_stop(&build, options->output, NULL, &error);
 	}
@@ -192,12 +200,13 @@ int build_run(const struct build_options *options)
 	int signal_number = written ? 0 : interrupt_signal();
 	if (signal_number)
 		report_text("%s: interrupted; not written", options->output);
-	else if (!build.stopped && build.items.count == 0 && whole)
+	else if (!build.stopped && build.items.count == 0 && whole && !written)
 		empty_report(&build);
 	else
 		report_summary(options, written, build.stopped, &build.totals);
 	manifest_free(&build.manifest);
 	items_free(&build.items);
+	free(build.order);
 	if (build.scanned)
 		source_list_free(&build.sources);
 	spool_close(&build.spool);

@@ -18,6 +18,7 @@ struct build_options {
 	unsigned workers;
 	bool strict, json, quiet;
 	bool update;      /* take records of unchanged sources from the archive that stands at `output` */
+	unsigned shard, shard_count; /* pack the shard-th (1..shard_count) part of the materials, chosen by their names; 0, 0: all */
 	bool any_lattice; /* accept MERL-like files of any legal extents */
 };
 

@@ -24,13 +24,14 @@ static void notice_take(void *user, enum source_notice kind, const char *path, c
 	}
 }
 
-static bool is_listed(void *user, const char *name)
+/* Listed, where there is a manifest, and of this shard, where there are shards. */
+static bool is_wanted(void *user, const char *name)
 {
 	struct build *build = user;
 	struct manifest_entry *entry = manifest_find(&build->manifest, name);
 	if (entry)
 		entry->found = true;
-	return entry != NULL;
+	return (entry || build->manifest.count == 0) && build_shard_has(build->options, name);
 }
 
 static uint64_t item_weight(const struct source_item *source)
@@ -38,10 +39,34 @@ static uint64_t item_weight(const struct source_item *source)
 	return source->bytes != UINT64_MAX ? source->bytes : merl_file_bytes(LATTICE_MERL);
 }
 
+/* Files by name; members of a container where it stands first, one after the other: whoever goes back in it reads it from the start. */
+static int order_compare(const void *a, const void *b, void *user)
+{
+	const struct source_item *items = user, *x = &items[*(const size_t *)a], *y = &items[*(const size_t *)b];
+	const int path = x->member && y->member ? strcmp(x->path, y->path) : (x->member != NULL) - (y->member != NULL);
+	if (path != 0)
+		return path;
+	if (x->member)
+		return (x->ordinal > y->ordinal) - (x->ordinal < y->ordinal);
+	return x < y ? -1 : x > y;
+}
+
+static bp_status order_make(struct build *build, bp_error *error)
+{
+	const size_t count = build->listed_count;
+	build->order = malloc((count + 1) * sizeof *build->order);
+	if (!build->order)
+		return error_memory(error, count * sizeof *build->order);
+	for (size_t n = 0; n < count; n++)
+		build->order[n] = n;
+	qsort_r(build->order, count, sizeof *build->order, order_compare, build->sources.items);
+	return BP_OK;
+}
+
 void build_inputs_collect(struct build *build)
 {
 	const struct source_options options = {
-		.notice = notice_take, .wanted = build->manifest.count > 0 ? is_listed : NULL, .user = build};
+		.notice = notice_take, .wanted = build->manifest.count > 0 || build->options->shard_count > 1 ? is_wanted : NULL, .user = build};
 	bp_error error;
 
 	if (source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count, &options, &build->sources,
@@ -58,6 +83,8 @@ void build_inputs_collect(struct build *build)
 		build->bytes_total += item_weight(&build->sources.items[i]);
 	}
 	build->listed_count = build->items.count;
+	if (order_make(build, &error))
+		build_stop(build, NULL, NULL, &error);
 }
 
 /* Opens streams until one has a next member. */

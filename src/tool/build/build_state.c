@@ -1,5 +1,8 @@
 #include "build_state.h"
 
+#include <string.h>
+
+#include "bytes.h"
 #include "tool/interrupt.h"
 #include "tool/report.h"
 
@@ -12,4 +15,9 @@ void build_stop(struct build *build, const char *file, const char *material, con
 {
 	report_error(file, material, error);
 	build->stopped = true;
+}
+
+bool build_shard_has(const struct build_options *options, const char *name)
+{
+	return options->shard_count <= 1 || bytes_crc32((const uint8_t *)name, strlen(name)) % options->shard_count == options->shard - 1;
 }

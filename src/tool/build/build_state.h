@@ -24,7 +24,8 @@ struct build {
 	bool scanned;            /* sources is filled */
 	struct items items;      /* those that workers read themselves, by name; then members of streams as they turn up */
 	size_t listed_count;     /* of items, the former: item i is sources.items[i] */
-	size_t submitted;        /* of these, the ones that were handed to workers */
+	size_t *order;           /* of the listed items, the order in which workers get them */
+	size_t submitted;        /* of these, how many were handed to workers */
 	size_t reported;         /* items whose outcome has been reported: always the first ones */
 	struct container *stream; /* the stream that is being read */
 	size_t stream_next;      /* the stream after it, in sources.streams */
@@ -41,5 +42,11 @@ bool build_goes_on(const struct build *build);
 
 /* Reports an error that ends the build. */
 void build_stop(struct build *build, const char *file, const char *material, const bp_error *error);
+
+/*
+ * Whether a material of this name belongs to the shard: CRC32(name) mod shard_count, counted from 1. Names alone decide, so the
+ * shards of any count are disjoint and together all there is.
+ */
+bool build_shard_has(const struct build_options *options, const char *name);
 
 #endif

@@ -6,11 +6,28 @@
 #include "tool/report.h"
 #include "tool/workers.h"
 
-#include <unistd.h>
+#include <stdlib.h>
 
 enum { BUDGET_LEAST = 1000, BUDGET_MOST = 4000000, BUDGET_USUAL = 60400, EFFORT_USUAL = 5 };
 enum { OPTION_PROFILE = OPTION_LONG, OPTION_BUDGET, OPTION_MAX_ERROR, OPTION_EFFORT, OPTION_MANIFEST, OPTION_STRICT, OPTION_UPDATE,
-       OPTION_JSON, OPTION_ANY_LATTICE };
+       OPTION_JSON, OPTION_ANY_LATTICE, OPTION_SHARD };
+
+enum { SHARDS_MOST = 65536 };
+
+/* "K/N" */
+static bool shard_parse(const char *text, struct build_options *options)
+{
+	char *end;
+	if (*text < '0' || *text > '9')
+		return false;
+	const unsigned long k = strtoul(text, &end, 10);
+	if (*end != '/' || end[1] < '0' || end[1] > '9')
+		return false;
+	const unsigned long n = strtoul(end + 1, &end, 10);
+	options->shard = (unsigned)k;
+	options->shard_count = (unsigned)n;
+	return !*end && k >= 1 && k <= n && n <= SHARDS_MOST;
+}
 
 static int build_main(const struct command *self, int argc, char **argv)
 {
@@ -26,6 +43,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 		{"strict", no_argument, NULL, OPTION_STRICT},
 		{"update", no_argument, NULL, OPTION_UPDATE},
 		{"json", no_argument, NULL, OPTION_JSON},
+		{"shard", required_argument, NULL, OPTION_SHARD},
 		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
 		{0},
 	};
@@ -64,6 +82,10 @@ static int build_main(const struct command *self, int argc, char **argv)
 		case OPTION_MAX_ERROR:
 			if (!option_number(self, "--max-error", optarg, 1e-6, 10, &options.fit.max_error))
 				return EXIT_USAGE;
+			break;
+		case OPTION_SHARD:
+			if (!shard_parse(optarg, &options))
+				return report_usage(self, "--shard: '%s' is not K/N with 1 <= K <= N <= %d, as in 3/16", optarg, SHARDS_MOST);
 			break;
 		case OPTION_EFFORT:
 			if (!option_integer(self, "--effort", optarg, 1, 9, &number))
@@ -110,6 +132,8 @@ const struct command command_build = {
 		"      --update           take the records of unchanged files (the same SHA-256, options and\n"
 		"                         codec) from the OUT.bpk that is there; what the inputs no longer\n"
 		"                         hold is dropped\n"
+		"      --shard K/N        only the K-th of N parts of the materials, chosen by their names: N builds\n"
+		"                         of the same inputs, on as many machines, then merge --expect N\n"
 		"      --json             one line per material and a summary line, on standard output\n"
 		"  -q, --quiet            no progress bar and no warnings\n"
 		"      --any-lattice      accept files of other extents than MERL's 90 90 180 (for tests)\n"

@@ -326,6 +326,7 @@ const struct command command_compare = {
 	         "Compares materials of the archive (all, or those named) with the MERL files of the same names in the folder\n"
 	         "MEASURED (or zip), and prints one row per material, then median, worst and mean:\n"
 	         "  PSNR       of a rendered sphere in dB, from 8-bit and from float sRGB values\n"
+	         "  dE ITP     mean colour difference of its pixels (ITU-R BT.2124); 1 is just noticeable at best\n"
 	         "  log RMSE   root mean square of log10((decoded + 1e-3)/(measured + 1e-3))\n"
 	         "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
 	         "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"

@@ -9,6 +9,18 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/resource.h>
+
+/* All inputs stay open: ask for as many files as that takes, where the usual limit (1,024) is lower. Opening tells where it is not allowed. */
+static void files_allow(size_t count)
+{
+	struct rlimit limit;
+	const rlim_t wanted = count + 32;
+	if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < wanted) {
+		limit.rlim_cur = limit.rlim_max < wanted ? limit.rlim_max : wanted;
+		setrlimit(RLIMIT_NOFILE, &limit);
+	}
+}
 
 static bool stop(void)
 {
@@ -42,19 +54,23 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 
 static int merge_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_REPLACE = OPTION_LONG };
+	enum { OPTION_REPLACE = OPTION_LONG, OPTION_EXPECT };
 	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
 	                                      {"quiet", no_argument, NULL, 'q'},
 	                                      {"replace", no_argument, NULL, OPTION_REPLACE},
+	                                      {"expect", required_argument, NULL, OPTION_EXPECT},
 	                                      {0}};
 	struct copy_options options = {.stop = stop};
 	bool quiet = false;
+	int64_t expected = 0;
 	int option, result = EXIT_FAILED;
 	bp_error error;
 
 	while ((option = options_next(self, argc, argv, "o:q", names)) >= 0) {
 		if (option == 'o')
 			options.output = optarg;
+		if (option == OPTION_EXPECT && !option_integer(self, "--expect", optarg, 1, 65536, &expected))
+			return EXIT_USAGE;
 		options.replace |= option == OPTION_REPLACE;
 		quiet |= option == 'q';
 	}
@@ -66,6 +82,12 @@ static int merge_main(const struct command *self, int argc, char **argv)
 		return report_usage(self, "no archive");
 
 	const size_t count = (size_t)(argc - optind);
+	if (expected && (uint64_t)expected != count) {
+		report_text("%s: not written: %" PRId64 " shards are expected, %zu archive%s given", options.output, expected, count, count == 1 ? " is" : "s are");
+		return EXIT_FAILED;
+	}
+	options.alike = expected != 0;
+	files_allow(count);
 	bp_archive **archives = calloc(count, sizeof *archives);
 	if (!archives) {
 		error_memory(&error, count * sizeof *archives);
@@ -89,11 +111,13 @@ const struct command command_merge = {
 	.name = "merge",
 	.run = merge_main,
 	.description = "join archives, without re-encoding",
-	.usage = "Usage: brdfpack merge -o OUT.bpk [--replace] ARCHIVE...\n"
+	.usage = "Usage: brdfpack merge -o OUT.bpk [OPTION]... ARCHIVE...\n"
 	         "Joins archives; records are copied byte for byte. A name that stands in two of them is\n"
 	         "refused, and nothing is written.\n"
 	         "\n"
 	         "  -o, --output OUT.bpk  the new archive; it may be one of the inputs\n"
+	         "      --expect N        the archives are the N shards of one build (build --shard): refuse\n"
+	         "                        another number, and records made with other options or versions\n"
 	         "      --replace         of a name that several archives have, take the last one's\n"
 	         "  -q, --quiet           say nothing on success\n"
 	         "  -h, --help            this text\n",

@@ -122,8 +122,8 @@ static void figure_describe(struct show *show, const struct show_options *option
 	figure->rows[figure->row_count++] = (struct figure_row){"decoded", &show->decoded};
 	figure->slice_count = options->slice_count;
 	for (int s = 0; s < options->slice_count; s++) {
-		long cell = lround(sqrt(options->theta_h[s] / 90) * figure->dims.theta_h);
-		figure->slices[s] = cell < (long)figure->dims.theta_h ? (uint32_t)cell : figure->dims.theta_h - 1;
+		const uint32_t cell = (uint32_t)(sqrt(options->theta_h[s] / 90) * figure->dims.theta_h);
+		figure->slices[s] = cell < figure->dims.theta_h ? cell : figure->dims.theta_h - 1;
 	}
 }
 

@@ -11,8 +11,9 @@
 
 /* The columns, and the keys of the JSON members. */
 enum figure {
-	FIGURE_PSNR, /* two per lighting: 8-bit, float */
-	FIGURE_LOG = 2 * LIGHTING_COUNT,
+	FIGURE_SPHERE, /* three per lighting: PSNR 8-bit, float, and dE ITP */
+	FIGURES_PER_SPHERE = 3,
+	FIGURE_LOG = FIGURES_PER_SPHERE * LIGHTING_COUNT,
 	FIGURE_CUBE_ROOT,
 	FIGURE_RELATIVE,
 	FIGURE_ALBEDO_MEASURED,
@@ -26,23 +27,26 @@ static const struct {
 	int width, digits;
 	bool low_is_bad;
 } FIGURES[FIGURE_COUNT] = {
-	{"psnr8_key", 6, 2, true},          {"psnr_key", 6, 2, true},   {"psnr8_env", 6, 2, true},
-	{"psnr_env", 6, 2, true},           {"psnr8_point", 6, 2, true}, {"psnr_point", 6, 2, true},
-	{"log_rmse", 8, 5, false},          {"cube_root_rmse", 9, 6, false}, {"largest_relative", 9, 4, false},
-	{"albedo_measured", 8, 4, false},   {"albedo", 8, 4, false},    {"bytes", 8, 0, false},
+	{"psnr8_key", 6, 2, true},        {"psnr_key", 6, 2, true},        {"delta_itp_key", 7, 4, false},
+	{"psnr8_env", 6, 2, true},        {"psnr_env", 6, 2, true},        {"delta_itp_env", 7, 4, false},
+	{"psnr8_point", 6, 2, true},      {"psnr_point", 6, 2, true},      {"delta_itp_point", 7, 4, false},
+	{"log_rmse", 8, 5, false},        {"cube_root_rmse", 9, 6, false}, {"largest_relative", 9, 4, false},
+	{"albedo_measured", 8, 4, false}, {"albedo", 8, 4, false},         {"bytes", 8, 0, false},
 };
 
 static bool figure_shown(const struct compare_report *report, int figure)
 {
-	return figure >= FIGURE_LOG || (report->lightings >> (figure / 2) & 1);
+	return figure >= FIGURE_LOG || (report->lightings >> (figure / FIGURES_PER_SPHERE) & 1);
 }
 
 static void figures_of(const struct compare_item *item, double values[FIGURE_COUNT])
 {
 	const struct comparison *comparison = &item->result.comparison;
 	for (int l = 0; l < LIGHTING_COUNT; l++) {
-		values[FIGURE_PSNR + 2 * l] = comparison->psnr[l].eight_bit;
-		values[FIGURE_PSNR + 2 * l + 1] = comparison->psnr[l].real;
+		double *sphere = &values[FIGURE_SPHERE + FIGURES_PER_SPHERE * l];
+		sphere[0] = comparison->psnr[l].eight_bit;
+		sphere[1] = comparison->psnr[l].real;
+		sphere[2] = comparison->itp[l];
 	}
 	values[FIGURE_LOG] = comparison->fidelity.log_rmse;
 	values[FIGURE_CUBE_ROOT] = comparison->fidelity.cube_root_rmse;
@@ -59,12 +63,12 @@ void compare_report_head(const struct compare_report *report)
 	printf("%-*s", report->name_width, "");
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		if (report->lightings >> l & 1)
-			printf("   PSNR %-6s", lighting_name((enum lighting)l));
+			printf("   PSNR %-6s  dE ITP", lighting_name((enum lighting)l));
 	printf("       log cube-root  largest relative error, at          albedo\n");
 	printf("%-*s", report->name_width, "material");
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		if (report->lightings >> l & 1)
-			printf("  8-bit  float");
+			printf("  8-bit  float    mean");
 	printf("      RMSE      RMSE     value theta_h theta_d phi_d  measured  decoded    bytes\n");
 }
 
