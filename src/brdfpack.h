@@ -106,7 +106,7 @@ typedef struct bp_layer {
 typedef struct bp_section {
 	uint32_t type, codec, version; /* as the format's specification numbers them */
 	uint32_t layer;                /* the first layer that needs it */
-	uint32_t flags;                /* bit 0: required, bit 1: colour only */
+	uint32_t flags;                /* bit 0: required, bit 1: colour only, bits 2, 3, 4: for channel R, G, B alone */
 	uint32_t bytes;
 	double error;                  /* its own error figure, or NaN */
 } bp_section;
@@ -211,7 +211,10 @@ typedef enum bp_form {
 
 typedef enum bp_colour {
 	BP_COLOUR_RGB = 0,
-	BP_COLOUR_MEAN = 1 /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
+	BP_COLOUR_MEAN = 1, /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
+	BP_COLOUR_R = 2,    /* one channel, given back in all three. Of profile 1 only its sections are read, about a third; records of */
+	BP_COLOUR_G = 3,    /* other profiles do not keep channels apart: BP_ERROR_UNSUPPORTED */
+	BP_COLOUR_B = 4
 } bp_colour;
 
 /* What to load. Zeroed but for struct_bytes it asks for the whole record, in RGB, expanded, without sampling. */

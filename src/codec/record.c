@@ -43,7 +43,7 @@ static bp_status sections_fetch(const struct record_head *head, const struct pro
 		if (!kind_among(codec->kinds, codec->kind_count, entry)) {
 			if (kind_among(codec->retired, codec->retired_count, entry))
 				return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
-				                 "%s: packed by an earlier version, whose records of this profile are no longer read; pack the material again",
+				                 "%s: packed by an earlier version whose records of this profile are no longer read; pack the material again",
 				                 head->name);
 			if (entry->flags & SECTION_REQUIRED)
 				return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
