@@ -11,7 +11,7 @@
 static const float DARK = 3e-4f; /* of a pixel's usual brightness: nobody sees how much darker */
 static const double RANGE = 4.32; /* log2 20 */
 static const double SHARED_WEIGHT = 0.1;
-enum { ROUNDS = 8 };
+enum { ROUNDS = 8, TURNS = 3 }; /* of h and d by turns; of these and phi */
 
 bp_status marginals_alloc(struct lattice_dims d, struct marginals *out, bp_error *error)
 {
@@ -101,7 +101,8 @@ static void pairs_fit_sums(struct lattice_dims d, const struct log_sums *sums, d
 	}
 }
 
-static void phi_fit(struct lattice_dims d, const float *shown, const struct log_sums *sums, const double *h, const double *j_mean, float *out)
+/* phi from what h and d leave. */
+static void phi_fit(struct lattice_dims d, const float *shown, const struct log_sums *sums, const double *h, const double *j_mean, double *phi)
 {
 	double explained[LATTICE_EXTENT_MAX] = {0};
 
@@ -113,7 +114,19 @@ static void phi_fit(struct lattice_dims d, const float *shown, const struct log_
 				explained[k] += of_row * (double)s[k];
 		}
 	for (uint32_t k = 0; k < d.phi_d; k++)
-		out[k] = (float)fast_exp2(clamped(mean_or(sums->phi[k] - explained[k], sums->phi_weight[k], 0), RANGE));
+		phi[k] = clamped(mean_or(sums->phi[k] - explained[k], sums->phi_weight[k], 0), RANGE);
+}
+
+/* The sums of every pair change by -change[k] in each cell. */
+static void pairs_lower(struct lattice_dims d, const float *shown, const double *change, struct log_sums *sums)
+{
+	for (uint32_t row = 0; row < d.theta_h * d.theta_d; row++) {
+		const double shared = row / d.theta_d < paper_shared_from(d.theta_h) ? 1 : SHARED_WEIGHT;
+		double sum = 0;
+		for (uint32_t k = 0; k < d.phi_d; k++)
+			sum += (double)shown[(size_t)row * d.phi_d + k] * change[k];
+		sums->pair[row] -= shared * sum;
+	}
 }
 
 static bool slice_is_black(struct lattice_dims d, const float *value, uint32_t i)
@@ -131,6 +144,7 @@ bp_status marginals_fit(struct lattice_dims d, const float *value, const float *
 	const size_t pairs = (size_t)d.theta_h * d.theta_d;
 	struct log_sums sums;
 	double h[LATTICE_EXTENT_MAX], j_mean[LATTICE_EXTENT_MAX];
+	double phi[LATTICE_EXTENT_MAX], before[LATTICE_EXTENT_MAX] = {0}, change[LATTICE_EXTENT_MAX];
 
 	sums.pair = calloc(2 * (pairs + d.phi_d), sizeof *sums.pair);
 	if (!sums.pair)
@@ -139,8 +153,17 @@ bp_status marginals_fit(struct lattice_dims d, const float *value, const float *
 	sums.phi = sums.pair_weight + pairs;
 	sums.phi_weight = sums.phi + d.phi_d;
 	sums_gather(d, value, shown, &sums);
-	pairs_fit_sums(d, &sums, h, j_mean);
-	phi_fit(d, shown, &sums, h, j_mean, out->phi);
+	for (int turn = 0; turn < TURNS; turn++) {
+		pairs_fit_sums(d, &sums, h, j_mean);
+		phi_fit(d, shown, &sums, h, j_mean, phi);
+		for (uint32_t k = 0; k < d.phi_d; k++) {
+			change[k] = phi[k] - before[k];
+			before[k] = phi[k];
+		}
+		pairs_lower(d, shown, change, &sums);
+	}
+	for (uint32_t k = 0; k < d.phi_d; k++)
+		out->phi[k] = (float)fast_exp2(phi[k]);
 	for (uint32_t i = 0; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = (size_t)i * d.theta_d + j;

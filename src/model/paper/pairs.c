@@ -148,6 +148,12 @@ static void marginals_settle(struct turns *t)
 		for (uint32_t i = 0; i < extents[axis]; i++)
 			f[axis][i] = mean > 0 ? paper_coded(paper_code((float)((double)f[axis][i] / mean))) : 1;
 		level *= mean;
+		if (axis == 2 && mean > 0) { /* B loses this factor, so A has it */
+			for (size_t at = (size_t)t->from * d.theta_d; at < (size_t)d.theta_h * d.theta_d; at++) {
+				t->a[at] *= (float)mean;
+				t->a_weight[at] /= (float)(mean * mean);
+			}
+		}
 	}
 	c->level = (float)level;
 }
@@ -164,7 +170,7 @@ static void hd_wanted(struct turns *t)
 	for (uint32_t i = t->from; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = (size_t)i * d.theta_d + j;
-			const float f = c->level * c->marginal.h[i] * c->marginal.d[j], y = f > 0 ? t->a[at] / f : 1;
+			const float f = c->level * c->marginal.h[i] * c->marginal.d[j], y = f > 0 && t->a_weight[at] > 0 ? t->a[at] / f : 1;
 			t->wanted[at] = y < FIELD_PAIR_MIN ? FIELD_PAIR_MIN : y < FIELD_VALUE_MAX ? y : FIELD_VALUE_MAX;
 			t->a_weight[at] *= f * f;
 			mean += (double)t->a_weight[at];
@@ -206,6 +212,12 @@ static bp_status pair_code(struct turns *t, struct sparse_fit *fit, enum paper_f
 	float *x = t->x[kind];
 	struct field_codec *codec = NULL;
 
+	if (sparse_fit_is_one(fit, t->wanted, weight)) {
+		for (size_t i = 0; i < fit->cells; i++)
+			value[i] = 1;
+		*out = (struct sparse_field){.rows = fit->plane.rows.field, .columns = fit->plane.field_columns};
+		return BP_OK;
+	}
 	const float least = sparse_fit_energies(fit, weight, t->energy);
 	const float edge = sparse_fit_rounds(fit, t->wanted, weight, t->energy, least, paper_keep(d, kind), first ? ROUNDS_FIRST : 1, STEPS, t->kept, x);
 	if (!last) {

@@ -10,6 +10,7 @@
 
 static const double LEFT_OUT = 1e-3; /* a tenth of the 1 % that measurements reproduce to */
 static const float LEAST_SHARE = 0.05f;
+static const double SETTLED = 1e-9, ROUNDING = 1e-12;
 
 bp_status sparse_fit_create(const struct wavelet_plane *plane, struct sparse_fit *out, bp_error *error)
 {
@@ -138,6 +139,7 @@ void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float 
 	const struct paper_kernels *kernels = paper_kernels_get();
 	const size_t n = fit->coefficients;
 	bool dropped = false;
+	double explained = 0;
 
 	for (size_t i = 0; i < n; i++) {
 		fit->inverse[i] = kept[i] ? 1 / (energy[i] + least) : 0;
@@ -145,11 +147,13 @@ void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float 
 			x[i] = 0;
 			dropped = true;
 		}
+		explained += (double)(energy[i] * x[i] * x[i]);
 	}
 	if (dropped)
 		sparse_fit_gradient(fit, wanted, weight, x);
 	double size = kernels->precondition(fit->inverse, fit->gradient, n, fit->direction);
-	for (uint32_t step = 0; step < steps && size > 0; step++) {
+	const double noise = fmax(SETTLED * size, ROUNDING * explained); /* below it single precision has no direction left to go */
+	for (uint32_t step = 0; step < steps && size > noise; step++) {
 		wavelet_inverse(&fit->plane, fit->direction, fit->field, fit->scratch);
 		const double curvature = kernels->weigh(weight, fit->cells, fit->field);
 		if (!(curvature > 0))
@@ -187,14 +191,14 @@ float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float
 
 /* ---- quantising ---- */
 
-static bool is_one(const float *value, const float *weight, size_t n)
+bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const float *weight)
 {
 	double squares = 0;
 	size_t count = 0;
 
-	for (size_t i = 0; i < n; i++)
+	for (size_t i = 0; i < fit->cells; i++)
 		if (weight[i] > 0) {
-			const double d = (double)value[i] - 1;
+			const double d = (double)wanted[i] - 1;
 			squares += d * d;
 			count++;
 		}
@@ -209,7 +213,7 @@ bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const
 	size_t count = 0;
 
 	*out = (struct sparse_field){.rows = fit->plane.rows.field, .columns = fit->plane.field_columns};
-	if (is_one(wanted, weight, fit->cells))
+	if (sparse_fit_is_one(fit, wanted, weight))
 		return BP_OK;
 	for (size_t i = 0; i < n; i++)
 		if (x[i] != 0) {

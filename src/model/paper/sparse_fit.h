@@ -60,9 +60,12 @@ void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float 
 float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, size_t keep,
                        uint32_t rounds, uint32_t steps, uint8_t *kept, float *x);
 
+/* Whether the field is 1 within a thousandth, rms over the cells with a weight. */
+bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const float *weight);
+
 /*
- * Quantises: levels of step `unit` / sqrt(the geometric mean of the energies of what is not 0). The field is left out (count 0) when it is
- * 1 within a thousandth, rms over the cells with a weight. The caller owns out's arrays.
+ * Quantises: levels of step `unit` / sqrt(the geometric mean of the energies of what is not 0). A field that is 1 is left out (count 0). The
+ * caller owns out's arrays.
  */
 bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, float unit,
                               const float *x, struct sparse_field *out, bp_error *error);
