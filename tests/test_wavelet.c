@@ -81,7 +81,7 @@ static void squares_are_those_of_the_basis(void **user)
 		assert_int_equal(wavelet_cells(&p), 4 * 12);
 		for (uint32_t n = 0; n < 11; n++) {
 			memset(field, 0, sizeof field);
-			for (int r = 0; r < 4; r++)
+			for (uint32_t r = 0; r < 4; r++)
 				field[r * 11 + n] = 1;
 			wavelet_forward(&p, field, coefficient, scratch);
 			for (uint32_t a = 0; a < m; a++) /* a constant along the rows: in their first coarse coefficient, twice the square's root */
@@ -151,7 +151,7 @@ static void a_constant_has_only_coarse_coefficients(void **user)
 			field[i] = 3;
 		wavelet_forward(&p, field, coefficient, scratch);
 		for (uint32_t i = 0; i < 32u * 16u; i++) {
-			const bool coarse = i % 32u < 32u >> p.rows.levels && i / 32u < 16u >> p.columns.levels;
+			const bool coarse = (i % 32u) < (32u >> p.rows.levels) && i / 32u < 16u >> p.columns.levels;
 			assert_true(fabsf(coefficient[i] - (coarse ? 3 * sqrtf((float)(1u << (p.rows.levels + p.columns.levels))) : 0)) < 1e-4f);
 		}
 	}

@@ -1,5 +1,6 @@
 #include "importance.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -84,7 +85,17 @@ static double draw(uint64_t *state)
 	return (double)(*state >> 11) * 0x1p-53;
 }
 
-/* The brightness of one light in one pixel: the mean of the channels' values times cos theta_i, or 0 where either direction is below the horizon. */
+static double cell_mean(const struct lattice *lattice, size_t cell, double scale)
+{
+	if (!lattice->valid[cell])
+		return 0;
+	return (lattice->rgb[0][cell] * scale + lattice->rgb[1][cell] * scale + lattice->rgb[2][cell] * scale) / 3;
+}
+
+/*
+ * The brightness of one light in one pixel: the mean of the channels' values times cos theta_i, or 0 where either direction is below the
+ * horizon; of a cell and its mirror image, so that a mirrored table has the same unit.
+ */
 static double light_drawn(const struct importance *m, const struct lattice *lattice, double scale, uint64_t *state)
 {
 	const struct lattice_dims d = m->dims;
@@ -100,12 +111,12 @@ static double light_drawn(const struct importance *m, const struct lattice *latt
 		else
 			low = middle + 1;
 	}
-	const size_t cell = (size_t)low * d.phi_d + k;
+	const size_t row = (size_t)low * d.phi_d;
 	const double turn = (double)(m->place[low].odd * m->cos_phi[k]), i = (double)m->place[low].even - turn, o = (double)m->place[low].even + turn;
-	const bool seen = draw(state) < 2 * o;
-	if (i <= 0 || !seen || !lattice->valid[cell])
+	const bool seen = draw(state) < i + o;
+	if (i <= 0 || o <= 0 || !seen)
 		return 0;
-	return (lattice->rgb[0][cell] * scale + lattice->rgb[1][cell] * scale + lattice->rgb[2][cell] * scale) * i / 3;
+	return (cell_mean(lattice, row + k, scale) * i + cell_mean(lattice, row + d.phi_d - 1 - k, scale) * o) / 2;
 }
 
 static double largest_value(const struct lattice *lattice)
@@ -119,13 +130,13 @@ static double largest_value(const struct lattice *lattice)
 	return largest;
 }
 
-int importance_unit(const struct importance *m, const struct lattice *lattice)
+double importance_unit(const struct importance *m, const struct lattice *lattice)
 {
 	static const double STRONG[] = {3, 1.5, 1.5, 1, 0.6};
 	enum { STRONG_COUNT = sizeof STRONG / sizeof *STRONG };
 	double pixel[PIXELS], mean = 0, brightness;
 	uint64_t state = 1;
-	int exponent, more;
+	int exponent;
 
 	frexp(largest_value(lattice), &exponent);
 	const double scale = ldexp(1, exponent < -1000 ? 1000 : -exponent); /* the largest becomes about 1: no sum overflows */
@@ -138,17 +149,17 @@ int importance_unit(const struct importance *m, const struct lattice *lattice)
 	brightness = select_kth(pixel, PIXELS, PIXELS * 9 / 10);
 	if (!(brightness > 1e-4 * mean))
 		brightness = mean > 0 ? mean : 1;
-	frexp(brightness, &more);
-	return more + (exponent < -1000 ? -1000 : exponent);
+	return fmax(ldexp(brightness, exponent < -1000 ? -1000 : exponent), DBL_MIN);
 }
 
 /* ---- weights ---- */
 
-void importance_weigh(const struct importance *m, const struct lattice *lattice, int channel, int unit, float *value, float *weight)
+void importance_weigh(const struct importance *m, const struct lattice *lattice, int channel, double unit, float *value, float *weight)
 {
 	const struct paper_kernels *kernels = paper_kernels_get();
 	const struct lattice_dims d = m->dims;
-	const double factor[2] = {ldexp(1, -unit / 2), ldexp(1, -unit - -unit / 2)};
+	int exponent;
+	const double mantissa = frexp(unit, &exponent), factor[2] = {ldexp(1, -exponent), 1 / mantissa};
 
 	for (uint32_t row = 0; row < d.theta_h * d.theta_d; row++) {
 		const size_t at = (size_t)row * d.phi_d;

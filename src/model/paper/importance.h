@@ -23,13 +23,13 @@ bp_status importance_create(struct lattice_dims dims, struct importance **out, b
 void importance_free(struct importance *importance); /* NULL is allowed */
 
 /*
- * The exponent e of the unit: 2^e is about the brightness, in 1/sr, of the tenth-brightest of a hundred pixels under 29 lights of which
- * five are strong, drawn from the lattice's cells by a fixed sequence; of the mean where that is 0. A table 2^n times as bright has e + n.
+ * The unit, in 1/sr: the brightness of the tenth-brightest of a hundred pixels under 29 lights of which five are strong, drawn from the
+ * lattice's cells by a fixed sequence; the mean where that is 0. It is as large for a table as the table's values are.
  */
-int importance_unit(const struct importance *importance, const struct lattice *lattice);
+double importance_unit(const struct importance *importance, const struct lattice *lattice);
 
-/* A channel in units of 2^unit, at most 1e15, 0 where invalid, and its weights, 0 where invalid: [cells] each. */
-void importance_weigh(const struct importance *importance, const struct lattice *lattice, int channel, int unit, float *value, float *weight);
+/* A channel in units of `unit`, at most 1e15, 0 where invalid, and its weights, 0 where invalid: [cells] each. */
+void importance_weigh(const struct importance *importance, const struct lattice *lattice, int channel, double unit, float *value, float *weight);
 
 /* How far a cell is seen, 0.01 to 1, and 0 where invalid: shown[cells]. */
 void importance_shown(const struct importance *importance, const struct lattice *lattice, float *shown);

@@ -20,7 +20,7 @@
 struct workshop {
 	struct lattice_dims dims;
 	struct importance *importance;
-	int unit;
+	double unit; /* of value, 1/sr */
 	struct sparse_fit pairs[2], slices;
 	float *value, *weight, *shown; /* [cells]; value becomes the decoded model */
 	float *fields;                 /* of a channel_fit */
@@ -96,7 +96,7 @@ static bp_status channel_fit(struct workshop *w, const struct lattice *lattice, 
 	status = status ? status : marginals_keep(&fit, out, error);
 	if (!status) {
 		out->slice_count = paper_shared_from(d.theta_h) + 1;
-		out->scale = ldexp((double)fit.level, w->unit);
+		out->scale = (double)fit.level * w->unit;
 		out->slice = calloc(out->slice_count, sizeof *out->slice);
 		status = out->slice ? slices_fit(&fit, &w->slices, out->slice, error) : error_memory(error, out->slice_count * sizeof *out->slice);
 	}
