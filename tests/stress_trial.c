@@ -9,8 +9,8 @@ const char *const PROPERTY_NAMES[PROPERTY_COUNT] = {
 };
 
 const struct subject SUBJECTS[SUBJECT_COUNT] = {
-	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-12, 1e-12, 1e-12}, {70, 80, 70, 80}},
-	{"spectral", PROFILE_SPECTRAL, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-12, 1e-12, 1e-12}, {120, 120, 120, 120}},
+	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-5, 1e-12, 1e-12}, {70, 80, 70, 80}},
+	{"spectral", PROFILE_SPECTRAL, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-5, 1e-12, 1e-12}, {120, 120, 120, 120}},
 };
 static const struct {
 	enum profile profile;

@@ -12,6 +12,7 @@
 
 #include "model/fidelity.h"
 #include "model/paper/field.h"
+#include "model/paper/paper_plane.h"
 #include "model/model.h"
 #include "model/paper/paper.h"
 #include "model/paper/sparse_fit.h"

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "error.h"
-#include "paper_sections.h"
+#include "paper_fields.h"
 #include "sparse_code.h"
 
 static uint32_t marginal_count(struct lattice_dims dims, int axis)

@@ -6,7 +6,7 @@
 #include "error.h"
 #include "model/paper/paper.h"
 #include "codec/profile_codec.h"
-#include "paper_sections.h"
+#include "paper_fields.h"
 
 enum { CODEC_RAW = 0, CODEC_SPARSE_OLD = 1, CODEC_SPARSE = 2 };
 enum { LEFT_OUT_HD = 1, LEFT_OUT_HPHI = 2, LEFT_OUT_SLICES = 4, LEFT_OUT_ALL = 7 };

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "paper_plane.h"
 
 struct field_codec {
 	struct wavelet_plane plane;

@@ -3,9 +3,6 @@
 #define MODEL_PAPER_FIELD_H
 
 #include "paper.h"
-#include "wavelet.h"
-
-struct wavelet_plane paper_plane(struct lattice_dims dims, enum paper_field field);
 
 /*
  * Values stay within these. A pair copula is nowhere 0, so that no cell of a slice is lost to it; a conditional one may be.

@@ -5,16 +5,18 @@
  *     1  marginals                    marginal.h
  *     2  c_hd, c_hphi, shared slice   pairs.h: Haar, 1/16 of the cells; one slice for all from 40 degrees on
  *     3  c_dphi|h per slice           slices.h: Daubechies, 1/64
- *     4  colour                       robust.h, on the decoded model
+ *     4  colour                       robust.h, on the decoded model, unless that loses it
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
-#include "field.h"
+#include "paper_plane.h"
 #include "slices.h"
 #include "stage.h"
+
+static const double LINE_WORSE = 1.25;
 
 /* What the channels share. */
 struct workshop {
@@ -104,6 +106,39 @@ static bp_status channel_fit(struct workshop *w, const struct lattice *lattice, 
 	return status;
 }
 
+/* What a picture shows of a channel's error under a line: the weighted sum of squares, in the unit. model: w->value. */
+static double line_error(const struct workshop *w, const struct lattice *lattice, int c, double level, double diffuse, double specular)
+{
+	double sum = 0;
+
+	for (uint32_t row = 0; row < w->dims.theta_h * w->dims.theta_d; row++) {
+		const size_t at = (size_t)row * w->dims.phi_d;
+		double of_row = 0;
+		for (size_t n = at; n < at + w->dims.phi_d; n++) {
+			const double value = diffuse + specular * level * (double)w->value[n], e = lattice->rgb[c][n] / w->unit - (value > 0 ? value : 0);
+			of_row += lattice->valid[n] ? (double)w->weight[n] * e * e : 0;
+		}
+		sum += of_row;
+	}
+	return sum;
+}
+
+/*
+ * The regression follows the many: where more than half of a channel is as good as black, its line is 0, lobe and all. Where it loses
+ * that much against the model as it is, the model stays as it is.
+ */
+static void colour_settle(const struct workshop *w, const struct lattice *lattice, int c, const struct paper_channel *channel, struct colour_fit *colour)
+{
+	const double level = channel->scale / w->unit;
+	const double plain = line_error(w, lattice, c, level, 0, 1);
+	const double line = line_error(w, lattice, c, level, colour->diffuse / w->unit, colour->specular);
+
+	if (!(line <= LINE_WORSE * plain)) {
+		colour->diffuse = 0;
+		colour->specular = 1;
+	}
+}
+
 bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
 {
 	struct paper_model *paper = calloc(1, sizeof *paper);
@@ -118,6 +153,8 @@ bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, str
 		stage_enter(STAGE_REGRESSION);
 		status = status ? status : paper_channel_expand(paper->dims, &paper->channel[c], PAPER_LAYERS, w.value, error);
 		status = status ? status : robust_fit_channel(lattice, c, w.value, paper->channel[c].scale, &colour[c], error);
+		if (!status)
+			colour_settle(&w, lattice, c, &paper->channel[c], &colour[c]);
 	}
 	workshop_free(&w);
 	if (status)

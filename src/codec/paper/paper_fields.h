@@ -1,6 +1,6 @@
-/* paper_sections.h: the contents of the paper's sections. */
-#ifndef CODEC_PAPER_PAPER_SECTIONS_H
-#define CODEC_PAPER_PAPER_SECTIONS_H
+/* paper_fields.h: the contents of the paper's sections. */
+#ifndef CODEC_PAPER_PAPER_FIELDS_H
+#define CODEC_PAPER_PAPER_FIELDS_H
 
 #include "model/paper/paper.h"
 #include "bytes.h"
