@@ -2,7 +2,8 @@
 # python_reader.sh BUILD: compares the independent reader (scripts/read_bpk.py) with the library.
 #
 # Every archive of format-spec/vectors must be judged alike, and every decoded value agree to 1e-5; then the
-# same for records that were fitted in this very build (BUILD/tests/test_record_pack makes them).
+# same for records that were fitted in this very build (BUILD/tests/test_record_pack makes them). A slow oracle
+# (paper_oracle.py) works out the paper's profile itself.
 set -eu
 build=${1:?usage: tests/python_reader.sh BUILD}
 cd "$(dirname "$0")/.."
@@ -48,6 +49,11 @@ for values in "$folder"/*.values; do
 	python3 "$reader" verify "${values%.values}.bpk" >"$folder/said" || fail "$values"
 	python3 "$reader" compare "${values%.values}.bpk" "$values" || fail "$values"
 done
+
+# The paper's profile from a lattice to its table, worked out independently.
+count=$((count + 1))
+"$build/tests/test_paper" --table >"$folder/table.json"
+python3 tests/paper_oracle.py "$folder/table.json" || fail "the oracle of the paper's profile"
 
 echo "python_reader: $count comparisons, $bad failed"
 [ "$bad" = 0 ]

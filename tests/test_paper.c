@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -469,8 +470,37 @@ static void unknown_profiles_and_wrong_tables_are_refused(void **user)
 	model_free(NULL);
 }
 
-int main(void)
+/* For tests/paper_oracle.py: a small lattice, and what it decodes to. */
+static void table_write(void)
 {
+	const struct lattice_dims d = {12, 10, 16};
+	struct lattice l;
+	struct model *model;
+	struct expansion table;
+	state = 5;
+	lattice_make(&l, d, 0.1);
+	fit_and_measure(&l, &model, &table);
+	printf("{\"dims\": [%u, %u, %u],\n", d.theta_h, d.theta_d, d.phi_d);
+	for (int part = 0; part < 2; part++) {
+		printf("\"%s\": [", part ? "decoded" : "measured");
+		for (int c = 0; c < 3; c++)
+			for (size_t i = 0; i < lattice_cells(d); i++) {
+				const double v = part ? table.unit * (double)table.rgb[c][i] : l.valid[i] ? l.rgb[c][i] : -1;
+				printf("%s%.17g%s", i ? ", " : "[", v, i + 1 < lattice_cells(d) ? "" : c < 2 ? "],\n" : "]");
+			}
+		printf("]%s\n", part ? "}" : ",");
+	}
+	expansion_free(&table);
+	model_free(model);
+	lattice_free(&l);
+}
+
+int main(int argc, char **argv)
+{
+	if (argc == 2 && !strcmp(argv[1], "--table")) {
+		table_write();
+		return 0;
+	}
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_fractions_of_the_paper_are_kept),
 		cmocka_unit_test(slices_are_shared_from_forty_degrees_on),
