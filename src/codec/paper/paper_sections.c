@@ -203,5 +203,7 @@ const struct profile_codec PAPER_CODEC = {
 	.profile = PROFILE_PAPER, .version = 4,
 	.kinds = KINDS, .kind_count = sizeof KINDS / sizeof *KINDS,
 	.retired = RETIRED, .retired_count = sizeof RETIRED / sizeof *RETIRED,
-	.encode = paper_encode, .decode = paper_decode,
+	.decode = paper_decode,
 };
+
+const struct profile_encoder PAPER_ENCODER = { .profile = PROFILE_PAPER, .encode = paper_encode };

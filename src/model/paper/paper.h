@@ -71,7 +71,8 @@ struct paper_model {
  * *out, which paper_free frees, and the regression of each channel's measured values on its model. Nothing is kept on failure. Values from
  * 1e-300 to 1e300 are in range.
  */
-bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, struct colour_fit colour[3], bp_error *error);
+bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out, struct colour_fit colour[3],
+                    bp_error *error);
 void paper_free(struct paper_model *paper); /* NULL is allowed */
 void sparse_field_free(struct sparse_field *field);
 

@@ -15,6 +15,7 @@
 #include "paper_plane.h"
 #include "slices.h"
 #include "stage.h"
+#include "watch.h"
 
 static const double LINE_WORSE = 1.25;
 
@@ -139,7 +140,7 @@ static void colour_settle(const struct workshop *w, const struct lattice *lattic
 	}
 }
 
-bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
+bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
 {
 	struct paper_model *paper = calloc(1, sizeof *paper);
 	struct workshop w;
@@ -149,7 +150,8 @@ bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, str
 	paper->dims = lattice->dims;
 	bp_status status = workshop_open(lattice, &w, error);
 	for (int c = 0; !status && c < 3; c++) {
-		status = channel_fit(&w, lattice, c, &paper->channel[c], error);
+		status = watch_tell(watch, 0.05 + 0.3 * c, error);
+		status = status ? status : channel_fit(&w, lattice, c, &paper->channel[c], error);
 		stage_enter(STAGE_REGRESSION);
 		status = status ? status : paper_channel_expand(paper->dims, &paper->channel[c], PAPER_LAYERS, w.value, error);
 		status = status ? status : robust_fit_channel(lattice, c, w.value, paper->channel[c].scale, &colour[c], error);
