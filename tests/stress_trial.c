@@ -18,6 +18,9 @@ static const struct {
 	enum property property;
 	double limit;
 } EXCEPTIONS[] = {
+	/* What a cell brighter by 12 orders of magnitude leaves around it hangs on the last bits: some thousandths of itself. */
+	{PROFILE_PAPER, "bright-cell", SCALE, 1e4},
+	{PROFILE_PAPER, "delta-lobe", SCALE, 1},
 	/* Ranges beyond single precision: the coefficients' rounding errors are what is lost. */
 	{PROFILE_SPECTRAL, "bright-cell", WHOLE_ONE, 10},
 	{PROFILE_SPECTRAL, "bright-cell", WHOLE_TEN, 30},

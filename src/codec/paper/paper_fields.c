@@ -122,18 +122,19 @@ static bp_status field_coarsen(const struct sparse_field *from, double factor, u
 	return BP_OK;
 }
 
-bp_status fields_coarsen(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *fields, uint32_t count, uint32_t shift,
+bp_status fields_coarsen(enum paper_field kind, const struct sparse_field *fields, uint32_t count, uint32_t shift,
                          struct sparse_field **out, bp_error *error)
 {
 	struct sparse_field *coarse = calloc(count ? count : 1, sizeof *coarse);
 	bp_status status = coarse ? BP_OK : error_memory(error, count * sizeof *coarse);
 
-	(void)dims;
+	*out = coarse;
+	if (status || shift >= SPARSE_SHIFT_MAX)
+		return status;
 	if (kind != PAPER_SLICE)
 		shift = shift > PAIRS_LATER ? shift - PAIRS_LATER : 0;
 	const double factor = 1 / (double)paper_step((uint16_t)(PAPER_STEP_ONE + shift));
 	for (uint32_t i = 0; !status && i < count; i++)
 		status = field_coarsen(&fields[i], factor, shift, &coarse[i], error);
-	*out = coarse;
 	return status;
 }

@@ -77,7 +77,7 @@ static bp_status model_write(const struct paper_model *paper, uint32_t shift, st
 				continue;
 			}
 			const struct sparse_field *fields = fields_of(channel, PARTS[part].field, &count);
-			status = fields_coarsen(paper->dims, PARTS[part].field, fields, count, shift, &coarse, error);
+			status = fields_coarsen(PARTS[part].field, fields, count, shift, &coarse, error);
 			if (!status && any_there(coarse, count)) {
 				status = fields_write(paper->dims, PARTS[part].field, coarse, count, part_add(sections, part, c), error);
 				*layer_count = PARTS[part].layer + 1u;

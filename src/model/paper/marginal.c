@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "model/math/fast_math.h"
@@ -78,7 +77,6 @@ static double mean_or(double sum, double weight, double otherwise)
 
 static void pairs_fit_sums(struct lattice_dims d, const struct log_sums *sums, double *h, double *j_mean)
 {
-	memset(j_mean, 0, d.theta_d * sizeof *j_mean);
 	for (int round = 0; round < ROUNDS; round++) {
 		for (uint32_t i = 0; i < d.theta_h; i++) {
 			double sum = 0, weight = 0;
@@ -143,7 +141,7 @@ bp_status marginals_fit(struct lattice_dims d, const float *value, const float *
 {
 	const size_t pairs = (size_t)d.theta_h * d.theta_d;
 	struct log_sums sums;
-	double h[LATTICE_EXTENT_MAX], j_mean[LATTICE_EXTENT_MAX];
+	double h[LATTICE_EXTENT_MAX], j_mean[LATTICE_EXTENT_MAX] = {0};
 	double phi[LATTICE_EXTENT_MAX], before[LATTICE_EXTENT_MAX] = {0}, change[LATTICE_EXTENT_MAX];
 
 	sums.pair = calloc(2 * (pairs + d.phi_d), sizeof *sums.pair);
