@@ -61,7 +61,7 @@ typedef enum bp_status {
 	BP_ERROR_MEMORY = 2,      /* an allocation failed */
 	BP_ERROR_IO = 3,          /* the system refused to read or write */
 	BP_ERROR_NOT_OURS = 4,    /* this is not a brdfpack archive (or not a MERL file) */
-	BP_ERROR_UNSUPPORTED = 5, /* intact, but made for a newer reader */
+	BP_ERROR_UNSUPPORTED = 5, /* intact, but made for a newer reader, or by a writer so old that it is no longer read: the message says */
 	BP_ERROR_CORRUPT = 6,     /* damaged: a value that no writer writes */
 	BP_ERROR_CHECKSUM = 7,    /* damaged: a CRC32 differs */
 	BP_ERROR_LIMIT = 8,       /* beyond a limit that the specification sets */
@@ -168,7 +168,7 @@ typedef struct bp_section {
 
 /*
  * Robust regression (DuMouchel and O'Brien 1989) of one channel's measured values, diffuse + specular x. Profile 1: x is the
- * decoded model, over all measured cells, and decoding uses both numbers. Profile 2: x is the measured mean of the three
+ * channel's decoded model, over all measured cells, and decoding uses both numbers (0 and 1 where the line would lose the model). Profile 2: x is the measured mean of the three
  * channels, over some 65,000 cells: a summary, which decoding does not use.
  */
 typedef struct bp_channel {
