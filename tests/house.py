@@ -136,6 +136,16 @@ def map_check(src, files):
         yield f"src/README.md names {word}, which is not there"
 
 
+def manual_check(src, files):
+    """The manual's table of what each command replaces has a row for each."""
+    with open(os.path.join(src, "tool/brdfpack.1"), encoding="utf-8") as file:
+        table = file.read().split(".TS\n")[1].split(".TE\n")[0]
+    for path in files:
+        command = re.fullmatch(r"tool/commands/cmd_(\w+)\.c", path)
+        if command and not re.search(rf"^{command[1]}\t", table, re.M):
+            yield f"{path}: the manual's table of files that are written has no row for it"
+
+
 def lengths_check(files):
     for path, text in files.items():
         lines = text.count("\n")
@@ -151,6 +161,7 @@ def main():
     for check in (arrows_check, circles_check, declarations_check, circles_of_calls_check, lengths_check):
         breaks += check(files)
     breaks += map_check(src, files)
+    breaks += manual_check(src, files)
     for line in breaks:
         print(line)
     print(f"{len(files)} files, {len(breaks)} breaks of the plan")
