@@ -121,12 +121,14 @@ bool folder_write(const struct folder_set *set)
 		free(there);
 		return false;
 	}
-	for (uint64_t n = 0; n < set->count; n++) {
-		const int found = name_look(set, n);
-		there[n] = found > 0;
+	uint64_t count = 0; /* a walk ends where a name cannot be told: the index fails, whatever number it promised */
+	for (; count < set->count && set->name(set->user, count); count++) {
+		const int found = name_look(set, count);
+		there[count] = found > 0;
 		free_names &= found >= 0;
 	}
-	for (uint64_t n = 0; n < set->count && free_names; n++)
+	count += count < set->count;
+	for (uint64_t n = 0; n < count && free_names; n++)
 		whole &= there[n] || name_write(set, n);
 	free(there);
 	return free_names && whole;
