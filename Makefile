@@ -69,7 +69,7 @@ help:
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
 	@echo "  pinned       bytes, errors and values of the demo materials against tests/pinned.tsv"
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
-	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man pages"
+	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, files for pkg-config and CMake, man pages, completions"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  reader-sources  lists the sources of the half that only reads (compile with -Isrc, and -DBP_PORTABLE where there is no POSIX)"
 	@echo "  clean        removes $(BUILD)/"
@@ -138,7 +138,19 @@ $(BUILD)/brdfpack: $(TOOL_O) $(BUILD)/internal.a
 $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
 	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
 
-install: all $(BUILD)/brdfpack.pc
+# where the package configuration finds PREFIX, from LIBDIR
+TO_PREFIX = $(shell realpath -ms --relative-to="$(LIBDIR)" "$(PREFIX)")
+$(BUILD)/%.cmake: src/%.cmake.in src/brdfpack.h FORCE
+	@sed -e 's|@TO_PREFIX@|$(TO_PREFIX)|; s|@VERSION@|$(VERSION)|g; s|@SHARED@|$(SHARED)|; s|@SONAME@|$(SONAME)|' $< > $@
+CMAKE_FILES := brdfpackConfig.cmake brdfpackConfigVersion.cmake
+SHARE        = $(DESTDIR)$(PREFIX)/share
+
+install: all $(BUILD)/brdfpack.pc $(addprefix $(BUILD)/,$(CMAKE_FILES))
+	install -d $(DESTDIR)$(LIBDIR)/cmake/brdfpack $(SHARE)/bash-completion/completions $(SHARE)/zsh/site-functions $(SHARE)/fish/vendor_completions.d
+	install -m 644 $(addprefix $(BUILD)/,$(CMAKE_FILES)) $(DESTDIR)$(LIBDIR)/cmake/brdfpack/
+	install -m 644 scripts/completions/brdfpack.bash $(SHARE)/bash-completion/completions/brdfpack
+	install -m 644 scripts/completions/_brdfpack $(SHARE)/zsh/site-functions/
+	install -m 644 scripts/completions/brdfpack.fish $(SHARE)/fish/vendor_completions.d/
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man3
 	install -m 755 $(BUILD)/brdfpack $(DESTDIR)$(PREFIX)/bin/
 	install -m 644 src/brdfpack.h $(DESTDIR)$(PREFIX)/include/
@@ -151,6 +163,8 @@ install: all $(BUILD)/brdfpack.pc
 	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
 
 uninstall:
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/cmake/brdfpack/,$(CMAKE_FILES)) $(SHARE)/bash-completion/completions/brdfpack
+	rm -f $(SHARE)/zsh/site-functions/_brdfpack $(SHARE)/fish/vendor_completions.d/brdfpack.fish
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/libbrdfpack_reader.a
 	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man3/libbrdfpack.3
