@@ -341,6 +341,8 @@ typedef struct bp_load_options {
 	int sampling;         /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */
 	const bp_allocator *allocator; /* NULL: malloc. Copied; all that bp_loaded counts in memory_bytes comes from it, and what is needed
 	                                  only while loading from malloc */
+	size_t max_memory_bytes; /* refuse, with BP_ERROR_LIMIT, a material that may need more while it is loaded: 24 bytes per cell and 1 MB, 36 MB
+	                            for MERL's lattice. 0: twice that lattice's need, 72 MB; an archive's few bytes may ask for gigabytes */
 } bp_load_options;
 
 /* What was loaded. */
@@ -485,8 +487,10 @@ BP_API bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t 
 BP_API uint64_t bp_writer_count(const bp_writer *writer);
 
 /*
- * Writes the archive to a file beside `path`, syncs it, and renames it over `path`: what was there before stays as it was
- * unless all of this succeeds. The writer stays usable. Errors: BP_ERROR_IO, BP_ERROR_MEMORY.
+ * Writes the archive to a file beside `path`, syncs it, and renames it over `path`: what was there before, whatever it was, stays as
+ * it was unless all of this succeeds. A link is followed; mode and owner are kept. Where only the folder could not be synced after
+ * that, this is BP_OK, and the error's message says so; otherwise it is empty then. The writer stays usable.
+ * Errors: BP_ERROR_IO, BP_ERROR_MEMORY, BP_ERROR_ARGUMENT for an empty path.
  */
 BP_API bp_status bp_writer_save(const bp_writer *writer, const char *path, bp_error *error);
 
