@@ -41,7 +41,7 @@ static uint32_t values_crc32(const struct expansion *table)
 static void row_print(FILE *out, const struct lattice *lattice, const char *name, int p, uint32_t budget)
 {
 	static const struct record_source source = {.bytes = 1};
-	const struct fit_options options = {PROFILES[p].profile, budget, 0, 5};
+	const struct fit_options options = {.profile = PROFILES[p].profile, .budget_bytes = budget, .effort = 5};
 	struct record_head head;
 	struct expansion table;
 	struct model *model = NULL;

@@ -25,7 +25,7 @@ static struct row empty_row(int material, int method)
 
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		row.figures.psnr[l] = (struct psnr){NAN, NAN};
-	row.figures.fidelity = (struct fidelity){NAN, NAN, NAN};
+	row.figures.fidelity = (struct fidelity){NAN, NAN, NAN, NAN};
 	return row;
 }
 

@@ -18,7 +18,7 @@
 
 enum { SPECTRAL_WEIGHTS_EDGE = 10, SPECTRAL_WEIGHTS = SPECTRAL_WEIGHTS_EDGE * SPECTRAL_WEIGHTS_EDGE };
 
-/* spectral_worth.c: from the measured values, in units of `unit` (1/sr). A lattice of fewer than 20 cells along theta_h or theta_d gets zeros. */
+/* spectral_weights_find.c: from the measured values, in units of `unit` (1/sr). A lattice of fewer than 20 cells along theta_h or theta_d gets zeros. */
 void spectral_weights_find(const struct lattice *lattice, double unit, uint8_t weights[SPECTRAL_WEIGHTS]);
 
 /* factor[theta_h theta_d]: of every row of a spectrum (spectrum.h). */

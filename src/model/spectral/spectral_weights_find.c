@@ -1,4 +1,4 @@
-/* spectral_worth.c: what errors are worth, from what was measured: the fit's part of spectral_weights.h. */
+/* spectral_weights_find.c: what errors are worth, from what was measured: the fit's part of spectral_weights.h. */
 #include "spectral_weights.h"
 
 #include <math.h>
