@@ -67,7 +67,7 @@ help:
 	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
 	@echo "  pinned       bytes, errors and values of the demo materials against tests/pinned.tsv"
-	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
+	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target; what is found is kept in FUZZ_CORPUS"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man pages"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  reader-sources  lists the sources of the half that only reads (compile with -Isrc, and -DBP_PORTABLE where there is no POSIX)"

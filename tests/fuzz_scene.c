@@ -1,0 +1,22 @@
+/* The scene reader on arbitrary text: its words are in ascending order, none of them twice. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "fuzz_file.h"
+#include "tool/scene.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
+{
+	struct scene_words words = {0};
+	if (scene_words_add(&words, fuzz_file(data, count), NULL) != BP_OK)
+		abort();
+	scene_words_sort(&words);
+	for (size_t n = 0; n < words.count; n++) {
+		const size_t bytes = strlen(words.word[n]);
+		if (bytes == 0 || bytes > BP_NAME_BYTES_MAX || (n > 0 && strcmp(words.word[n - 1], words.word[n]) >= 0))
+			abort();
+	}
+	scene_words_free(&words);
+	return 0;
+}
