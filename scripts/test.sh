@@ -172,7 +172,7 @@ job_slurm() {
 }
 job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECONDS=12 fuzz; }
 
-test_flags=(CFLAGS="-O3 -g -Werror")
+test_flags=(CFLAGS="-O3 -g -Werror" TEST_HOOKS=1)
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
 if wanted unit cli install portable python valgrind stress faults pinned bench slurm; then prepare test "${test_build[@]}" all tests; fi
@@ -180,7 +180,7 @@ if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack
 if wanted pinned; then prepare pinned "${test_build[@]}" build/test/tests/pinned; fi
 if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi
 # no -Werror: what the sanitizers insert makes gcc warn of things that are not there
-if wanted asan; then prepare asan BUILD=build/asan CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow all tests; fi
+if wanted asan; then prepare asan BUILD=build/asan TEST_HOOKS=1 CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow all tests; fi
 if wanted clang; then prepare clang BUILD=build/clang CC=clang CFLAGS="-O2 -g -Werror" all tests; fi
 if wanted faults; then prepare faults "${test_build[@]}" faults-build; fi
 if wanted fuzz; then prepare fuzz "${test_build[@]}" fuzz-build; fi
