@@ -17,6 +17,7 @@
 #     faults    damaged archives, killed and starved builds, threads (the short form of `make faults`)
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
 #     slurm     shards as an array job on Slurm, on this machine alone (in continuous integration, or when named)
+#     arm64     unit tests on ARM64, cross-compiled and run under qemu (in continuous integration, or when named)
 #     fuzz      each fuzz target for some seconds
 #
 # Without a JOB: all of them, but for what is said above. First everything they need is built, then the jobs run, as many at once as there are
@@ -26,7 +27,7 @@ cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
 all_jobs="asan faults fuzz python stress unit pinned cli bench install portable valgrind clang house"
-on_request="slurm"
+on_request="slurm arm64"
 logs=build/logs
 passed=0
 failed=0
@@ -170,12 +171,17 @@ job_slurm() {
 	scripts/setup.sh slurm >"$logs/setup-slurm.log" 2>&1 || true
 	check "shards on Slurm" "$logs/slurm.log" tests/slurm.sh build/test
 }
+job_arm64() {
+	build test || return
+	scripts/setup.sh arm64 >"$logs/setup-arm64.log" 2>&1 || true
+	NATIVE=build/test/brdfpack check "unit tests on ARM64" "$logs/arm64.log" tests/arm64.sh build/arm64
+}
 job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECONDS=12 fuzz; }
 
 test_flags=(CFLAGS="-O3 -g -Werror" TEST_HOOKS=1)
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
-if wanted unit cli install portable python valgrind stress faults pinned bench slurm; then prepare test "${test_build[@]}" all tests; fi
+if wanted unit cli install portable python valgrind stress faults pinned bench slurm arm64; then prepare test "${test_build[@]}" all tests; fi
 if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
 if wanted pinned; then prepare pinned "${test_build[@]}" build/test/tests/pinned; fi
 if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi
