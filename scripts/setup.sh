@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, and nothing that is already there.
 #
-#     scripts/setup.sh [build|test|slow|slurm|arm64|bench]...      default: build
+#     scripts/setup.sh [build|test|slow|slurm|arm64|mitsuba|debian|bench]...      default: build
 #
 #     build  what the tool and the library need
 #     test   what the unit tests (also those of the benchmark) and command-line tests need besides
 #     slow   what the clang, sanitizer and valgrind jobs need besides
 #     slurm  what the job on Slurm needs besides
 #     arm64  what the unit tests on ARM64, cross-compiled, need: adds that architecture to dpkg
+#     mitsuba  what the job with Mitsuba 3 needs besides
+#     debian  what makes and checks the Debian packages
 #     bench  what the benchmarks and their plots need besides
 #
 # Needs root or sudo only when something is missing; without either it names the packages and stops.
@@ -15,11 +17,13 @@ set -euo pipefail
 
 # package:command, where any version of the command will do, however it was installed
 build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
-test="gcc-multilib libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
+test="gcc-multilib libcmocka-dev libgsl-dev python3:python3 python3-dev python3-venv pkg-config:pkg-config cmake:cmake liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
 # not gcc-aarch64-linux-gnu, which gcc-multilib excludes
 arm64="gcc-12-aarch64-linux-gnu qemu-user:qemu-aarch64 libc6-dev=arm64 zlib1g-dev=arm64 libcmocka-dev=arm64 libarchive-dev=arm64 nettle-dev=arm64 libpng-dev=arm64"
+mitsuba="libllvm19"
+debian="dpkg-dev debhelper lintian"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 
 wanted=""
@@ -30,9 +34,11 @@ for group in "${@:-build}"; do
 	slow) wanted+=" $slow" ;;
 	slurm) wanted+=" $slurm" ;;
 	arm64) wanted+=" $arm64" ;;
+	mitsuba) wanted+=" $mitsuba" ;;
+	debian) wanted+=" $debian" ;;
 	bench) wanted+=" $bench" ;;
 	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, bench" >&2
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, mitsuba, debian, bench" >&2
 		exit 2
 		;;
 	esac
