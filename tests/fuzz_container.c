@@ -35,21 +35,21 @@ static void items_read(const struct source_list *list)
 static void stream_read(struct source_list *list, const char *path)
 {
 	struct container *stream;
-	struct source_item item;
+	struct source_item item = {0};
 	struct lattice lattice;
-	if (container_open(path, CONTAINER_SEQUENTIAL, &stream, NULL) != BP_OK)
+	if (container_open(path, CONTAINER_SEQUENTIAL, NULL, &stream, NULL) != BP_OK)
 		return;
 	for (int n = 0; n < MEMBERS_MAX; n++) {
 		bool more = false;
 		const bp_status status = source_stream_next(list, path, stream, &item, &more, NULL);
-		if (status == BP_ERROR_ARGUMENT || (status == BP_OK && !more))
+		if (status == BP_OK && !more)
 			break;
-		if (status)
-			continue;
-		item_check(&item);
-		if (lattice_read(container_read, stream, &READING, &lattice, NULL) == BP_OK)
-			lattice_free(&lattice);
-		source_item_clear(&item);
+		if (status == BP_OK) {
+			item_check(&item);
+			if (lattice_read(container_read, stream, &READING, &lattice, NULL) == BP_OK)
+				lattice_free(&lattice);
+		}
+		source_item_clear(&item); /* of what is refused too */
 	}
 	container_close(stream);
 }

@@ -13,8 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 		abort();
 	scene_words_sort(&words);
 	for (size_t n = 0; n < words.count; n++) {
-		const size_t bytes = strlen(words.word[n]);
-		if (bytes == 0 || bytes > BP_NAME_BYTES_MAX || (n > 0 && strcmp(words.word[n - 1], words.word[n]) >= 0))
+		if (words.word[n].text[0] == '\0' || (n > 0 && strcmp(words.word[n - 1].text, words.word[n].text) >= 0))
 			abort();
 	}
 	scene_words_free(&words);
