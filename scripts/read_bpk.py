@@ -150,7 +150,7 @@ class Record:
         demand(zlib.crc32(head[:-4]) == struct.unpack("<I", head[-4:])[0], "checksum", at + self.head_bytes - 4, "record's head")
         (version, self.profile, self.codec_version, h, d, p, n, layers, sections, self.left_out, self.budget, self.max_error,
          self.effort, reserved, self.horizon, self.source_bytes) = struct.unpack_from("<HHIHHHBBHHIdIIdQ", head, 16)
-        demand(version == 1, "unsupported", at + 16, f"record version {version}")
+        demand(version == 2, "unsupported", at + 16, f"record version {version}")
         self.dims = (h, d, p)
         demand(all(4 <= x <= 1024 for x in self.dims) and h * d * p <= 1 << 24, "corrupt", at + 24, "lattice")
         demand(1 <= layers <= 16 and sections <= 64 and n >= 1, "corrupt", at + 30, "counts")
@@ -162,16 +162,16 @@ class Record:
         for diffuse, specular, rejected, _, converged in self.colour:
             demand(math.isfinite(diffuse) and math.isfinite(specular) and 0 <= rejected <= 1 and converged <= 1,
                    "corrupt", at + 112, "colour")
-        self.layers = [struct.unpack_from("<IIddd", head, 208 + 32 * i) for i in range(layers)]
+        self.layers = [struct.unpack_from("<Ifddd", head, 208 + 32 * i) for i in range(layers)]
         self.sections = [struct.unpack_from("<HHHHHHIIId", head, 208 + 32 * (layers + i)) for i in range(sections)]
         end, before = self.head_bytes, 0
         for kind, codec, version, layer, flags, reserved, offset, size, crc, error in self.sections:
             demand(reserved == 0 and before <= layer < layers and offset == end and size >= 1, "corrupt", at + 208, "section table")
             end, before = end + size, layer
         demand(end == self.bytes, "corrupt", at + 12, "record bytes")
-        for number, (size, reserved, *figures) in enumerate(self.layers):
+        for number, (size, *figures) in enumerate(self.layers):
             ends = [s[6] + s[7] for s in self.sections if s[3] <= number]
-            demand(size == max(ends, default=self.head_bytes) and reserved == 0 and all(f >= 0 for f in figures),
+            demand(size == max(ends, default=self.head_bytes) and all(f >= 0 for f in figures),
                    "corrupt", at + 208, "layer table")
         self.name = check_name(head[-4 - n:-4], at)
         demand(self.name.encode() == entry[0], "corrupt", at, "not the name that the index says")
@@ -291,8 +291,8 @@ DAUBECHIES = [(a + b * math.sqrt(3)) / (4 * math.sqrt(2)) for a, b in ((1, 1), (
 
 
 def plane_axis(n):
-    """(levels, cells) of the transform's axis for a field of n cells."""
-    levels = n.bit_length() - 2
+    """(levels, cells) of the transform's axis for n cells."""
+    levels = max(n.bit_length() - 2, 0)
     return levels, (n + (1 << levels) - 1 >> levels) << levels
 
 
@@ -311,76 +311,100 @@ def inverse_line(line, levels, low):
 class Field:
     """A sparse field: a density over rows x columns, 1 everywhere without coefficients."""
 
-    def __init__(self, rows, columns, count, step, low):
-        self.rows, self.columns, self.count, self.step, self.low = rows, columns, count, step, low
+    def __init__(self, rows, columns, low, mirrored, least):
+        self.rows, self.columns, self.low, self.mirrored, self.least = rows, columns, low, mirrored, least
+        self.row_axis, self.column_axis = plane_axis(rows), plane_axis((columns + 1) // 2 if mirrored else columns)
+        self.parts = 2 if mirrored else 1
+        self.cells = self.row_axis[1] * self.column_axis[1] * self.parts
         self.coefficients = {}
 
+    def band(self, index):
+        column, row = divmod(index, self.row_axis[1])
+
+        def level(axis, x):
+            return (x // (axis[1] >> axis[0])).bit_length()
+        return level(self.column_axis, column % self.column_axis[1]) + level(self.row_axis, row)
+
     def expand(self):
-        if not self.count:
+        if not self.coefficients:
             return [[1.0] * self.columns for _ in range(self.rows)]
-        (row_levels, m), (column_levels, n) = plane_axis(self.rows), plane_axis(self.columns)
-        plane = [[0.0] * n for _ in range(m)]
+        (row_levels, m), (column_levels, n) = self.row_axis, self.column_axis
+        plane = [[[0.0] * n for _ in range(self.parts)] for _ in range(m)]
         for index, value in self.coefficients.items():
-            plane[index // n][index % n] = value
-        plane = [inverse_line(row, column_levels, self.low) for row in plane]
-        plane = [inverse_line(list(column), row_levels, self.low) for column in zip(*plane)]
-        return [[min(max(plane[c][r], 0.0), 1e6) for c in range(self.columns)] for r in range(self.rows)]
+            column, row = divmod(index, m)
+            plane[row][column // n][column % n] = value
+        plane = [sum((inverse_line(part, column_levels, self.low) for part in row), []) for row in plane]
+        plane = list(zip(*[inverse_line(list(column), row_levels, self.low) for column in zip(*plane)]))
+        return [[min(max(v, self.least), 1e6) for v in self.unfold(plane[r])] for r in range(self.rows)]
+
+    def unfold(self, row):
+        if not self.mirrored:
+            return row[:self.columns]
+        even, odd, half, out = row[:self.column_axis[1]], row[self.column_axis[1]:], math.sqrt(0.5), [0.0] * self.columns
+        for k in range(self.columns // 2):
+            out[k], out[-1 - k] = (even[k] + odd[k]) * half, (even[k] - odd[k]) * half
+        if self.columns % 2:
+            out[self.columns // 2] = even[self.columns // 2]
+        return out
 
 
-def read_fields(data, at, count, rows, columns, low):
-    fields = []
-    demand(len(data) >= at + 8 * count, "corrupt", 0, "a section of coefficients is short")
-    cells = plane_axis(rows)[1] * plane_axis(columns)[1]
-    for i in range(count):
-        kept, step = struct.unpack_from("<If", data, at + 8 * i)
-        demand(kept <= cells and (0 < step < math.inf if kept else step == 0), "corrupt", at, "a field's count or step")
-        fields.append(Field(rows, columns, kept, step, low))
-    stream = data[at + 8 * count:]
-    demand(sum(f.count for f in fields) <= 8 * len(stream), "corrupt", at, "too many coefficients")
-    coder, gaps, magnitudes = RangeDecoder(stream), [Gamma() for _ in range(8)], [Gamma() for _ in range(8)]
-    for field in fields:
-        following = gap = magnitude = 0
-        for _ in range(field.count):
+def read_fields(data, fields):
+    demand(len(data) >= 2 * len(fields), "corrupt", 0, "a section of coefficients is short")
+    steps = struct.unpack_from(f"<{len(fields)}H", data)
+    demand(any(steps) and all(s == 0 or 7168 <= s <= 40448 for s in steps), "corrupt", 0, "steps")
+    stream = data[2 * len(fields):]
+    coder, numbers, gaps = RangeDecoder(stream), Gamma(), [Gamma() for _ in range(8)]
+    magnitudes, before, room = [[Gamma() for _ in range(4)] for _ in range(12)], {}, 8 * len(stream)
+    for field, step in zip(fields, steps):
+        if not step:
+            continue
+        count, following, gap, levels = numbers.decode(coder) + 1, 0, 0, {}
+        demand(count <= field.cells and count <= room, "corrupt", 0, "a field's number of coefficients")
+        room -= count
+        for _ in range(count):
             gap = gaps[min(size_class(gap), 7)].decode(coder)
-            magnitude = magnitudes[min(size_class(magnitude), 7)].decode(coder)
-            negative = coder.even(1)
-            demand(following + gap < cells and magnitude < 32767, "corrupt", 0, "a coefficient")
-            field.coefficients[following + gap] = (magnitude + 1) * field.step * (-1 if negative else 1)
-            following += gap + 1
+            index = following + gap
+            demand(index < field.cells, "corrupt", 0, "a coefficient's place")
+            level = magnitudes[min(field.band(index), 11)][min(abs(before.get(index, 0)), 3)].decode(coder) + 1
+            demand(level <= 1048575, "corrupt", 0, "a level")
+            levels[index] = -level if coder.even(1) else level
+            following = index + 1
+        before = levels
+        field.coefficients = {index: level * 2.0 ** ((step - 32768) / 256) for index, level in levels.items()}
     demand(coder.at == len(stream), "corrupt", 0, "the stream's length")
-    return fields
 
 
-PAPER_KINDS = {(1, 0, 1), (2, 1, 1), (3, 1, 1), (4, 1, 1)}
+PAPER_KINDS = {(4 * c + t, *kind) for c in range(3) for t, kind in ((1, (0, 2)), (2, (2, 1)), (3, (2, 1)), (4, (2, 1)))}
 
 
 def decode_paper(record, layers):
-    h, d, p = record.dims
     found = record.load(layers, PAPER_KINDS)
-    demand(1 in found and len(found[1]) == 8 + 4 * (h + d + p), "corrupt", record.base, "marginals")
-    scale, *marginals = struct.unpack(f"<d{h + d + p}f", found[1])
-    demand(all(0 <= x < math.inf for x in [scale] + marginals), "corrupt", record.base, "marginals")
-    demand(all(math.isfinite(c[1] * scale) for c in record.colour), "corrupt", record.base, "scale times specular")
+    return [decode_paper_channel(record, c, {t: found[4 * c + t] for t in range(1, 5) if 4 * c + t in found}) for c in range(3)]
+
+
+def decode_paper_channel(record, channel, found):
+    h, d, p = record.dims
+    diffuse, specular = record.colour[channel][:2]
+    demand(1 in found and len(found[1]) == 8 + 2 * (h + d + p), "corrupt", record.base, "marginals")
+    scale, *codes = struct.unpack(f"<d{h + d + p}H", found[1])
+    demand(0 <= scale < math.inf and math.isfinite(specular * scale), "corrupt", record.base, "the scale")
+    marginals = [2.0 ** ((code - 32768) / 1024) if code else 0.0 for code in codes]
     f_h, f_d, f_phi = marginals[:h], marginals[h:h + d], marginals[h + d:]
-    hd = read_fields(found[2], 0, 1, h, d, HAAR)[0] if 2 in found else Field(h, d, 0, 0, HAAR)
-    hphi = read_fields(found[3], 0, 1, h, p, HAAR)[0] if 3 in found else Field(h, p, 0, 0, HAAR)
-    slices = [Field(d, p, 0, 0, DAUBECHIES)]
-    if 4 in found:
-        demand(len(found[4]) >= 4, "corrupt", record.base, "slices")
-        count = struct.unpack_from("<I", found[4])[0]
-        demand(1 <= count <= h, "corrupt", record.base, "slices")
-        slices = read_fields(found[4], 4, count, d, p, DAUBECHIES)
-    c_hd, c_hphi, rgb = hd.expand(), hphi.expand(), [[], [], []]
-    c_slices = [s.expand() for s in slices]
+    shared = next(i for i in range(h + 1) if 9 * i * i >= 4 * h * h)
+    hd, hphi = Field(h, d, HAAR, False, 1 / 32), Field(h, p, HAAR, True, 1 / 32)
+    slices = [Field(d, p, DAUBECHIES, True, 0.0) for _ in range(shared + 1)]
+    for section, fields in (2, [hd]), (3, [hphi]), (4, slices):
+        if section in found:
+            read_fields(found[section], fields)
+    c_hd, c_hphi, c_slices, out = hd.expand(), hphi.expand(), [s.expand() for s in slices], []
     for i in range(h):
-        conditional = c_slices[min(i, len(slices) - 1)]
+        conditional = c_slices[min(i, shared)]
         for j in range(d):
             row = min(min(f_h[i] * f_d[j], 1e15) * c_hd[i][j], 1e15)
             for k in range(p):
                 b = row * min(f_phi[k] * c_hphi[i][k], 1e15) * conditional[j][k]
-                for c, (diffuse, specular, *_) in enumerate(record.colour):
-                    rgb[c].append(min(max(0.0, diffuse + specular * scale * b), 1e304))
-    return rgb
+                out.append(min(max(0.0, diffuse + specular * scale * b), 1e304))
+    return out
 
 
 # ---- 9: the spectral profile ----
@@ -615,7 +639,26 @@ def inverse_lift(x):
     return z
 
 
-SPECTRAL_KINDS = {(16, 0, 2), (17, 1, 2)}
+SPECTRAL_KINDS = {(16, 0, 3), (17, 1, 2)}
+
+
+def weight_factors(hs, ds, weights):
+    """factor[row][column] of a spectrum's coefficients: they are coded divided by these."""
+    steps = len(hs) - 1
+
+    def place(extents, i, level):
+        cell = i if level == steps else 2 * i if i < extents[level + 1] else 2 * (i - extents[level + 1]) + 1
+        return min(max((cell + 0.5) / extents[level] * 10 - 0.5, 0.0), 9.0)
+
+    def factor(i, j):
+        level = next((l for l in range(steps) if i >= hs[l + 1] or j >= ds[l + 1]), steps)
+        y, x = place(hs, i, level), place(ds, j, level)
+        row, column = min(int(y), 8), min(int(x), 8)
+        w = [weights[10 * (row + a) + column + b] for a in (0, 1) for b in (0, 1)]
+        above, below = (w[n] + (x - column) * (w[n + 1] - w[n]) for n in (0, 2))
+        return 2.0 ** ((above + (y - row) * (below - above)) / 16)
+
+    return [[factor(i, j) for j in range(ds[0])] for i in range(hs[0])]
 
 
 def decode_spectral(record, layers):
@@ -623,8 +666,9 @@ def decode_spectral(record, layers):
     wanted = record.load_list(layers, SPECTRAL_KINDS)
     demand([(s[0], s[3]) for s, _ in wanted] == [(16, 0)] + [(17, l) for l in range(layers)], "corrupt", record.base, "sections of fields and planes")
     data = wanted[0][1]
-    demand(len(data) == 76, "corrupt", record.base, "the fields' bytes")
-    unit, *rotation, step, c0, c1, c2, count = struct.unpack("<d12fffffI", data)
+    demand(len(data) == 176, "corrupt", record.base, "the fields' bytes")
+    unit, *rotation, step, c0, c1, c2, count = struct.unpack_from("<d12fffffI", data)
+    weights = data[76:]
     base, rotation = rotation[:3], rotation[3:]
     demand(2.0 ** -1022 <= unit <= 2.0 ** 999 and all(abs(x) <= 64 for x in base) and
            all(abs(r) <= 1.001 for r in rotation) and
@@ -640,6 +684,7 @@ def decode_spectral(record, layers):
             demand(coder.at <= len(data) - 4, "corrupt", record.base, "planes are short")
         demand(coder.at == len(data) - 4, "corrupt", record.base, "planes are long")
 
+    factor = weight_factors(planes.hs, planes.ds, weights)
     fields = []
     for f in range(3):
         spectra = [[[0.0] * d for _ in range(h)] for _ in range(p)]
@@ -649,8 +694,11 @@ def decode_spectral(record, layers):
             r = count - 1 - (end - 1 - (f * p + m)) // (3 * p)
             a = (k >> 2) >> r << r
             if a:
+                negative = planes.sign[g, m, b, y, x] == 2
                 value = (a + (c2 * 2 ** r if r else c0 if a == 1 else c1)) * step
-                spectra[m][planes.bands[b].y0 + y][planes.bands[b].x0 + x] = -value if planes.sign[g, m, b, y, x] == 2 else value
+                y, x = planes.bands[b].y0 + y, planes.bands[b].x0 + x
+                value *= factor[y][x]
+                spectra[m][y][x] = -value if negative else value
         for plane in spectra:
             if not any(map(any, plane)):
                 continue

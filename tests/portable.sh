@@ -46,11 +46,13 @@ portable() { # portable NAME FLAG...: a program of the reader's sources alone
 }
 portable stdc
 ways=("$scratch/stdc/reader")
-if echo 'int main(void) { return 0; }' | cc -m32 -x c -o "$scratch/probe32" - 2>/dev/null && "$scratch/probe32"; then
-	portable m32 -m32 -msse2 -mfpmath=sse -D_FILE_OFFSET_BITS=64
+# not gcc-multilib, which no cross compiler may stand beside: what it would add is the link to these headers
+m32=(-m32 -msse2 -mfpmath=sse -idirafter /usr/include/x86_64-linux-gnu)
+if printf '#include <errno.h>\n#include <stdio.h>\nint main(void) { return errno; }\n' | cc "${m32[@]}" -x c -o "$scratch/probe32" - 2>/dev/null && "$scratch/probe32"; then
+	portable m32 "${m32[@]}" -D_FILE_OFFSET_BITS=64
 	ways+=("$scratch/m32/reader")
 else
-	echo "no 32-bit libc here (gcc-multilib): that one is left out"
+	echo "no 32-bit libc here (apt-get install libc6-dev-i386 lib32gcc-12-dev): that one is left out"
 fi
 for profile in paper spectral; do
 	expected=$("$scratch/reader" "$scratch/$profile.bpk")

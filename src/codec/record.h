@@ -20,24 +20,26 @@ enum { RECORD_BUDGET_MIN = 1000, RECORD_BUDGET_MAX = 4000000 };
 
 /* Every record begins with these bytes. */
 #define RECORD_MAGIC "\x8b" "REC\r\n\x1a\n"
-enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 1 };
+enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 2 };
 
 /* In place of a codec version: no encoder made this record as it is, so no rebuild takes it for what it would make. */
 enum { RECORD_LAYERS_DROPPED = 0 };
 
 /* Types of section; 1..15 belong to the paper's profile, 16..31 to the spectral one. */
 enum section_type {
-	SECTION_MARGINALS = 1, /* scale and the three marginals */
+	SECTION_MARGINALS = 1, /* scale and the three marginals of channel R */
 	SECTION_PAIR_HD = 2,   /* c_hd */
 	SECTION_PAIR_HPHI = 3, /* c_hphi */
 	SECTION_SLICES = 4,    /* c_dphi|h */
+	SECTION_CHANNEL = 4,   /* G's types are this much higher, B's twice as much */
 	SECTION_FIELDS = 16,   /* what makes fields of levels, and a table of fields */
 	SECTION_PLANES = 17    /* bit planes of the levels, one section to a layer */
 };
 
 enum section_flag {
 	SECTION_REQUIRED = 1, /* a reader that does not know the type, codec or version must refuse the layer */
-	SECTION_COLOUR = 2    /* not needed for an achromatic load */
+	SECTION_COLOUR = 2,   /* not needed for an achromatic load */
+	SECTION_ONLY_R = 4    /* needed for channel R alone; for G and B twice and four times this */
 };
 
 /* The measured file a record was made from. */
@@ -77,7 +79,8 @@ struct record_head {
 	struct record_layer layers[LAYERS_MAX];
 	uint32_t section_count;
 	struct record_section sections[RECORD_SECTIONS_MAX];
-	uint32_t left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 and are not stored */
+	uint32_t left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 in all channels and are not stored */
+	uint32_t channels; /* bit c: channel c is wanted. All three when parsed; who loads one alone clears the others */
 };
 
 /* Bytes of a head, CRC included; a profile subtracts this from its budget before it spends the rest. */
@@ -109,7 +112,7 @@ bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_he
 /* Delivers `count` bytes at `offset` from the record's start; offsets in its errors are the caller's to understand. */
 typedef bp_status record_fetch_fn(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error);
 
-/* The fewest layers whose log RMSE is at most this; all where none satisfies it or 0 is asked for. */
+/* The fewest layers whose log RMSE of what can be seen is at most this; all where none satisfies it or 0 is asked for. */
 uint32_t record_layers_for(const struct record_head *head, double max_log_rmse);
 
 /* Checks the head and every section's checksum of a record that is in memory, `count` bytes. */
