@@ -18,7 +18,9 @@ WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-pr
 ifneq ($(SANITIZE),)
 SANFLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
 endif
-ALL_CFLAGS = $(REQUIRED) $(WARNINGS) $(CFLAGS) $(SANFLAGS)
+# switches by which tests let workers crash or dawdle: in no build that is installed
+TEST_HOOKS ?=
+ALL_CFLAGS = $(REQUIRED) $(WARNINGS) $(CFLAGS) $(SANFLAGS) $(if $(TEST_HOOKS),-DBRDFPACK_TEST_HOOKS)
 Q := $(if $(filter 1,$(V)),,@)
 # quiet under make -s, and where V=1 shows the commands themselves
 SAY = @$(if $(filter 1,$(V))$(findstring s,$(firstword -$(MAKEFLAGS))),true,echo) "  $(1)"
@@ -68,7 +70,7 @@ help:
 	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
 	@echo "  pinned       bytes, errors and values of the demo materials against tests/pinned.tsv"
-	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
+	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target; what is found is kept in FUZZ_CORPUS"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, files for pkg-config and CMake, man pages, completions"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  reader-sources  lists the sources of the half that only reads (compile with -Isrc, and -DBP_PORTABLE where there is no POSIX)"
@@ -77,6 +79,7 @@ help:
 	@echo "  CC=$(CC)  CFLAGS='$(CFLAGS)'  LDFLAGS='$(LDFLAGS)'"
 	@echo "  BUILD=$(BUILD)  where objects and programs go"
 	@echo "  SANITIZE=address,undefined  builds with sanitizers (give it a BUILD of its own)"
+	@echo "  TEST_HOOKS=1  with the switches that some command-line tests need, which are left out without"
 	@echo "  PREFIX=$(PREFIX)  LIBDIR=$(LIBDIR)  DESTDIR=$(DESTDIR)"
 	@echo "  V=1  shows the commands"
 	@echo "scripts/setup.sh installs the Debian packages, scripts/test.sh runs every test job."

@@ -61,7 +61,7 @@ class Archive:
         demand(flags & 0xFFFF == 0, "unsupported", 12, f"flags {flags:#x}")
         demand(minor > 0 or head[48:60] == bytes(12), "corrupt", 48, "reserved bytes")
         demand(size == self.size, "corrupt", min(size, self.size), "the file was cut or extended")
-        demand(self.count <= 100000000 and self.pages <= 16000000 and self.depth <= 8 and self.depth <= self.pages and
+        demand(self.count <= min(100000000, 226 * self.pages) and self.pages <= 16000000 and self.depth <= 8 and self.depth <= self.pages and
                (self.count == 0) == (self.pages == 0) == (self.depth == 0), "corrupt", 24, "counts")
         demand(self.index >= 64 and self.index + self.PAGE * self.pages == size, "corrupt", 32, "index offset")
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, and nothing that is already there.
 #
-#     scripts/setup.sh [build|test|slow|slurm|mitsuba|debian|bench]...      default: build
+#     scripts/setup.sh [build|test|slow|slurm|arm64|mitsuba|debian|bench]...      default: build
 #
 #     build  what the tool and the library need
 #     test   what the unit tests (also those of the benchmark) and command-line tests need besides
 #     slow   what the clang, sanitizer and valgrind jobs need besides
 #     slurm  what the job on Slurm needs besides
+#     arm64  what the unit tests on ARM64, cross-compiled, need: adds that architecture to dpkg
 #     mitsuba  what the job with Mitsuba 3 needs besides
 #     debian  what makes and checks the Debian packages
 #     bench  what the benchmarks and their plots need besides
@@ -19,6 +20,8 @@ build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-d
 test="libc6-dev-i386 lib32gcc-12-dev libcmocka-dev libgsl-dev python3:python3 python3-dev python3-venv pkg-config:pkg-config cmake:cmake liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
+# not gcc-aarch64-linux-gnu, which gcc-multilib excludes
+arm64="gcc-12-aarch64-linux-gnu qemu-user:qemu-aarch64 libc6-dev=arm64 zlib1g-dev=arm64 libcmocka-dev=arm64 libarchive-dev=arm64 nettle-dev=arm64 libpng-dev=arm64"
 mitsuba="libllvm19"
 debian="dpkg-dev debhelper lintian"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
@@ -30,11 +33,12 @@ for group in "${@:-build}"; do
 	test) wanted+=" $test" ;;
 	slow) wanted+=" $slow" ;;
 	slurm) wanted+=" $slurm" ;;
+	arm64) wanted+=" $arm64" ;;
 	mitsuba) wanted+=" $mitsuba" ;;
 	debian) wanted+=" $debian" ;;
 	bench) wanted+=" $bench" ;;
 	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, mitsuba, debian, bench" >&2
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, mitsuba, debian, bench" >&2
 		exit 2
 		;;
 	esac
@@ -45,6 +49,7 @@ for entry in $wanted; do
 	package=${entry%%:*}
 	command=""
 	[ "$entry" = "$package" ] || command=${entry#*:}
+	package=${package/=/:} # of another architecture, as dpkg has it
 	[ -z "$command" ] || ! command -v "$command" >/dev/null 2>&1 || continue
 	[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
 done
@@ -67,6 +72,7 @@ fi
 echo "setup.sh: installing ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
+if [[ " ${missing[*]} " == *:arm64\ * ]]; then "${as_root[@]}" dpkg --add-architecture arm64 || exit 1; fi
 if ! { "${as_root[@]}" apt-get update -qq &&
 	"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
 	tail -n 20 "$log" >&2

@@ -20,6 +20,7 @@
 #     faults    damaged archives, killed and starved builds, threads (the short form of `make faults`)
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
 #     slurm     shards as an array job on Slurm, on this machine alone (in continuous integration, or when named)
+#     arm64     unit tests on ARM64, cross-compiled and run under qemu (in continuous integration, or when named)
 #     fuzz      each fuzz target for some seconds
 #
 # Without a JOB: all of them, but for what is said above. First everything they need is built, then the jobs run, as many at once as there are
@@ -29,7 +30,7 @@ cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
 all_jobs="asan faults fuzz python stress unit pinned package cli bench install portable valgrind clang house"
-on_request="slurm mitsuba debian"
+on_request="slurm arm64 mitsuba debian"
 logs=build/logs
 passed=0
 failed=0
@@ -183,17 +184,22 @@ job_slurm() {
 	scripts/setup.sh slurm >"$logs/setup-slurm.log" 2>&1 || true
 	check "shards on Slurm" "$logs/slurm.log" tests/slurm.sh build/test
 }
+job_arm64() {
+	build test || return
+	scripts/setup.sh arm64 >"$logs/setup-arm64.log" 2>&1 || true
+	NATIVE=build/test/brdfpack check "unit tests on ARM64" "$logs/arm64.log" tests/arm64.sh build/arm64
+}
 job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECONDS=12 fuzz; }
 
-test_flags=(CFLAGS="-O3 -g -Werror")
+test_flags=(CFLAGS="-O3 -g -Werror" TEST_HOOKS=1)
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
-if wanted unit cli install portable package mitsuba python valgrind stress faults pinned bench slurm; then prepare test "${test_build[@]}" all tests; fi
+if wanted unit cli install portable package mitsuba python valgrind stress faults pinned bench slurm arm64; then prepare test "${test_build[@]}" all tests; fi
 if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
 if wanted pinned; then prepare pinned "${test_build[@]}" build/test/tests/pinned; fi
 if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi
 # no -Werror: what the sanitizers insert makes gcc warn of things that are not there
-if wanted asan; then prepare asan BUILD=build/asan CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow all tests; fi
+if wanted asan; then prepare asan BUILD=build/asan TEST_HOOKS=1 CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow all tests; fi
 if wanted clang; then prepare clang BUILD=build/clang CC=clang CFLAGS="-O2 -g -Werror" all tests; fi
 if wanted faults; then prepare faults "${test_build[@]}" faults-build; fi
 if wanted fuzz; then prepare fuzz "${test_build[@]}" fuzz-build; fi

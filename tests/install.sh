@@ -22,6 +22,12 @@ archive=$scratch/demo.bpk
 "$scratch/usr/bin/brdfpack" build -q --any-lattice -o "$archive" "$scratch/materials"
 count=$(find "$scratch/materials" -name "*.binary" | wc -l)
 
+# what lets tests crash a worker is in no build that does not ask for it
+cc -std=c17 -D_GNU_SOURCE -Isrc -c -o "$scratch/work.o" src/tool/build/build_work.c
+if grep -q BRDFPACK_TEST "$scratch/work.o"; then
+	echo "test switches in an ordinary build"
+	exit 1
+fi
 flags=(-Wall -Wextra -Werror)
 read -r -a shared <<<"$(pkg-config --cflags --libs brdfpack)"
 read -r -a static <<<"$(pkg-config --static --cflags --libs brdfpack)"

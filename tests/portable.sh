@@ -72,3 +72,4 @@ refused() {
 }
 sentence="little-endian machines" refused -U__BYTE_ORDER__ -D__BYTE_ORDER__=__ORDER_BIG_ENDIAN__
 sentence="precision of its operands" refused -U__FLT_EVAL_METHOD__ -D__FLT_EVAL_METHOD__=2
+sentence="gcc 12 or clang 14" refused -U__GNUC__ -D__GNUC__=11

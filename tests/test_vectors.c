@@ -119,6 +119,7 @@ static const struct vector VECTORS[] = {
 	{ "bad-head-checksum", BP_ERROR_CHECKSUM, "A bit of a record's head differs.", make_head_checksum },
 	{ "bad-section-checksum", BP_ERROR_CHECKSUM, "A bit of a section differs.", make_section_checksum },
 	{ "bad-count", BP_ERROR_CORRUPT, "The header counts four materials, the index has three.", make_count },
+	{ "bad-count-pages", BP_ERROR_CORRUPT, "The header counts 10^8 materials in one page.", make_count_pages },
 	{ "bad-depth", BP_ERROR_CORRUPT, "The header says two levels, there is one page.", make_depth },
 	{ "bad-index-offset", BP_ERROR_CORRUPT, "An index offset near 2^64.", make_index_offset },
 	{ "bad-page-padding", BP_ERROR_CORRUPT, "A byte of an index page's padding is not zero.", make_page_padding },

@@ -55,10 +55,12 @@ faults-build: all
 faults: faults-build
 	$(Q)tests/faults.sh $(BUILD) $(FAULTS_ASAN) $(FAULTS_FLAGS)
 
-# Coverage-guided fuzzing (clang): `make fuzz FUZZ_SECONDS=600` spends that much on each target.
+# Coverage-guided fuzzing (clang): `make fuzz FUZZ_SECONDS=600` spends that much on each target, FUZZ_TARGETS=scene on this alone.
 FUZZ_SECONDS ?= 60
 FUZZ_BUILD   := $(BUILD)/fuzz
-FUZZ_TARGETS := archive record merl manifest options
+# what earlier runs found and later ones begin with; `make clean` takes it along unless it is elsewhere
+FUZZ_CORPUS  ?= $(FUZZ_BUILD)/corpus
+FUZZ_TARGETS ?= archive record merl manifest options scene container
 ifeq ($(SANITIZE),fuzzer-no-link,address,undefined)
 $(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz_%.o $(BUILD)/tests/archive_walk.o $(BUILD)/internal.a $(filter-out $(BUILD)/src/tool/main.o,$(TOOL_O))
 	$(call SAY,LD    $@)
@@ -67,7 +69,7 @@ endif
 fuzz-build:
 	$(Q)$(MAKE) --no-print-directory BUILD=$(FUZZ_BUILD) CC=clang CFLAGS="-O1 -g" SANITIZE=fuzzer-no-link,address,undefined $(FUZZ_TARGETS:%=$(FUZZ_BUILD)/tests/fuzz_%)
 fuzz: fuzz-build
-	$(Q)tests/fuzz.sh $(FUZZ_BUILD) $(FUZZ_SECONDS)
+	$(Q)tests/fuzz.sh $(FUZZ_BUILD) $(FUZZ_SECONDS) $(FUZZ_CORPUS) $(FUZZ_TARGETS)
 
 # Bytes, errors and decoded values of the demo materials against tests/pinned.tsv; PINNED_FLAGS=--write pins them anew.
 PINNED_FLAGS ?=

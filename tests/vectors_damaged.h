@@ -67,6 +67,7 @@ FIXTURE void make_minor(const char *path)
 FIXTURE void make_major(const char *path) { header_with(path, 8, 2, 2); }
 FIXTURE void make_flags(const char *path) { header_with(path, 12, 1, 4); }
 FIXTURE void make_count(const char *path) { header_with(path, 24, 4, 8); }
+FIXTURE void make_count_pages(const char *path) { header_with(path, 24, 100000000, 8); }
 FIXTURE void make_depth(const char *path) { header_with(path, 44, 2, 4); }
 FIXTURE void make_index_offset(const char *path) { header_with(path, 32, UINT64_MAX - 4095, 8); }
 FIXTURE void make_header_checksum(const char *path) { flipped(path, 20, 0); }

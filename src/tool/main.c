@@ -4,6 +4,7 @@
  */
 #include "command.h"
 #include "report.h"
+#include "usage.h"
 
 #include "brdfpack.h"
 #include "merl/spelling.h"
@@ -60,7 +61,7 @@ static void help_print(FILE *out)
 	             "Usage: brdfpack COMMAND [OPTION]... [ARGUMENT]...\n\nCommands:\n");
 	for (size_t i = 0; commands[i]; i++)
 		fprintf(out, "  %-9s %s\n", commands[i]->name, commands[i]->description);
-	fprintf(out, "\n`brdfpack COMMAND --help` explains a command; `brdfpack --version` prints the version.\n"
+	fprintf(out, "\n`brdfpack COMMAND --help` explains a command, `brdfpack --version` the version.\n"
 	             "Exit codes: 0 done, 1 something failed, 2 the command line is wrong.\n");
 }
 
@@ -98,7 +99,7 @@ static int run(int argc, char **argv)
 		return EXIT_USAGE;
 	}
 	if (wants_help) {
-		fputs(command->usage, stdout);
+		usage_print(stdout, command->usage);
 		return EXIT_OK;
 	}
 	return command->run(command, argc - 1, argv + 1);

@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include "report.h"
+#include "usage.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -11,6 +12,19 @@
 #include <string.h>
 
 enum { OPTION_HELP = 255, NAMES_MAX = 32 };
+
+/* Behind "--" a '-' is a name like any other: of a material, it may be. */
+static bool operands_check(const struct command *command, int argc, char **argv)
+{
+	if (optind > 1 && !strcmp(argv[optind - 1], "--"))
+		return true;
+	for (int n = optind; n < argc; n++)
+		if (!strcmp(argv[n], "-")) {
+			report_usage(command, "'-': standard input cannot be read, give a file's name ('./-' is a file called so; '-- -' a material)");
+			return false;
+		}
+	return true;
+}
 
 int options_next(const struct command *command, int argc, char **argv, const char *letters, const struct option *names)
 {
@@ -34,12 +48,17 @@ int options_next(const struct command *command, int argc, char **argv, const cha
 			return OPTIONS_WRONG;
 		}
 	}
+	if (option >= 0 && option != '?' && option != ':' && optarg && !strcmp(optarg, "-")) {
+		report_usage(command, "'-' after '%s%s': standard input and output cannot be had, give a file's name ('./-' is a file called so)",
+		             index >= 0 ? "--" : "", index >= 0 ? all_names[index].name : (const char[]){'-', (char)option, '\0'});
+		return OPTIONS_WRONG;
+	}
 	switch (option) {
 	case -1:
-		return OPTIONS_END;
+		return operands_check(command, argc, argv) ? OPTIONS_END : OPTIONS_WRONG;
 	case OPTION_HELP:
 	case 'h':
-		fputs(command->usage, stdout);
+		usage_print(stdout, command->usage);
 		return OPTIONS_HELPED;
 	case ':':
 		report_usage(command, "option '%s' needs a value", word);

@@ -25,6 +25,7 @@ enum { OPTION_LONG = 256 };
 /*
  * The next option's letter or value; OPTIONS_END after the last (operands start at argv[optind]);
  * OPTIONS_HELPED when --help or -h was given and has been printed; OPTIONS_WRONG after a message.
+ * A '-' for a file is refused: archives and measured files are read and written where one can seek.
  * `letters` without a leading ':' or '+'; --help need not be listed.
  */
 int options_next(const struct command *command, int argc, char **argv, const char *letters, const struct option *names);

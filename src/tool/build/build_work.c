@@ -35,9 +35,9 @@ static bp_status slot_read(void *user, void *bytes, size_t capacity, size_t *cou
 	return BP_OK;
 }
 
-#ifndef BRDFPACK_RELEASE
+#ifdef BRDFPACK_TEST_HOOKS
 /*
- * For tests: BRDFPACK_TEST_CRASH=NAME lets the worker that gets this material die of SIGSEGV;
+ * For tests, and in no other build: BRDFPACK_TEST_CRASH=NAME lets the worker that gets this material die of SIGSEGV;
  * NAME:1 only at the first attempt. BRDFPACK_TEST_SLEEP=SECONDS delays every material.
  */
 static void test_hooks(const struct job *job)
@@ -112,7 +112,7 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 		.seen = checksum_add, .seen_user = &sha, .any_dims = build->options->any_lattice, .carried = &carried};
 	bp_status status;
 
-#ifndef BRDFPACK_RELEASE
+#ifdef BRDFPACK_TEST_HOOKS
 	test_hooks(job);
 #endif
 	stage_enter(STAGE_READ);

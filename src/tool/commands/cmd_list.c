@@ -208,7 +208,7 @@ const struct command command_list = {
 	.usage = "Usage: brdfpack list [OPTION]... ARCHIVE [NAME]...\n"
 	         "Prints one row per material, and totals. With names: everything about these materials.\n"
 	         "\n"
-	         "      --sha256 also the SHA-256 of the whole file, to sign or to compare; reads all of it\n"
-	         "      --json   one JSON object per material, then a summary object\n"
-	         "  -h, --help   this text\n",
+	         "      --sha256  also the SHA-256 of the whole file, to sign or to compare; reads all of it\n"
+	         "      --json    one JSON object per material, then a summary object\n"
+	         "  -h, --help    this text\n",
 };

@@ -1,9 +1,10 @@
-# SIGINT and SIGTERM: the workers stop, no temporary file stays, exit 130 and 143, the old archive is untouched.
+# SIGHUP, SIGINT and SIGTERM: the workers stop, no temporary file stays, exit 129, 130 and 143, the old archive is untouched.
+needs_hooks
 fixture alpha beta gamma
 build -o out.bpk alpha.binary && cp out.bpk before
 cat >interrupt.py <<'END'
 import os, signal, subprocess, sys, time
-for number in (signal.SIGINT, signal.SIGTERM):
+for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
     environment = dict(os.environ, BRDFPACK_TEST_SLEEP="10")
     build = subprocess.Popen([os.environ["BRDFPACK"], "build", "--any-lattice", "-j2", "-o", "out.bpk", "."],
                              env=environment, start_new_session=True)

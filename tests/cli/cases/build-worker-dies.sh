@@ -1,4 +1,5 @@
 # A worker that dies is replaced and its material tried once more, then reported with its signal.
+needs_hooks
 fixture alpha beta gamma
 BRDFPACK_TEST_CRASH=beta:1 code build -j2 -o once.bpk .
 brdfpack list once.bpk | cut -d ' ' -f 1
