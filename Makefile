@@ -105,6 +105,14 @@ $(BUILD)/demo_table.inc: manifests/demo.tsv src/merl/demo_table.awk
 $(BUILD)/src/merl/demo.o: $(BUILD)/demo_table.inc
 $(BUILD)/src/merl/demo.o: ALL_CFLAGS += -I$(BUILD)
 
+# How the page of `report` looks and what its script does, as C text.
+$(BUILD)/page_assets.inc: src/tool/report_page/page.css src/tool/report_page/page.js src/tool/report_page/text_to_c.awk
+	@mkdir -p $(@D)
+	$(call SAY,AWK   $@)
+	$(Q)for part in css js; do LC_ALL=C awk -v name=PAGE_$$(echo $$part | tr a-z A-Z) -f src/tool/report_page/text_to_c.awk src/tool/report_page/page.$$part || exit 1; done > $@.part && mv $@.part $@
+$(BUILD)/src/tool/report_page/page_sections.o: $(BUILD)/page_assets.inc
+$(BUILD)/src/tool/report_page/page_sections.o: ALL_CFLAGS += -I$(BUILD)
+
 # With internal symbols, for the tool and the tests.
 $(BUILD)/internal.a: $(LIBRARY_O)
 	$(call SAY,AR    $@)

@@ -311,6 +311,16 @@ void source_list_free(struct source_list *list)
 	*list = (struct source_list){0};
 }
 
+static int item_name_compare(const void *name, const void *item)
+{
+	return strcmp(name, ((const struct source_item *)item)->name);
+}
+
+const struct source_item *source_list_find(const struct source_list *list, const char *name)
+{
+	return list->item_count ? bsearch(name, list->items, list->item_count, sizeof *list->items, item_name_compare) : NULL;
+}
+
 bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
                              bool *more, bp_error *error)
 {
