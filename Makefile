@@ -72,6 +72,7 @@ help:
 	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
 	@echo "  pinned       bytes, errors and values of the demo materials against tests/pinned.tsv"
+	@echo "  viewer       the page's viewer, in $(BUILD)/viewer: the reader as WebAssembly (needs emscripten)"
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man pages"
 	@echo "  uninstall    removes what install wrote"
@@ -278,6 +279,8 @@ uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a
 	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man3/libbrdfpack.3
+
+include src/viewer/viewer.mk
 
 clean:
 	rm -rf $(BUILD)
