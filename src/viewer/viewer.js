@@ -1,12 +1,14 @@
 "use strict";
 // The viewer's part of the page: which material is shown, how it is lit, and what the pointer does.
 
+const NAMES_MAX = 1000, LAMP = unit([0.5, 0.6, 0.8]);
+
 class Viewer {
 	constructor() {
 		this.find = (id) => document.getElementById(id);
 		this.slots = { a: null, b: null }; // {archive, index, info, layers, material}
 		this.turn = 0;
-		this.lamp = unit([0.5, 0.6, 0.8]);
+		this.lamp = LAMP;
 		this.base = 1; // exposure before the slider
 		this.shown = 0;
 	}
@@ -57,7 +59,8 @@ class Viewer {
 	async names(archive) {
 		const select = this.find("v-names"), tiles = archive === this.own ? document.querySelectorAll(".tile[data-index]") : [];
 		const options = Array.from(tiles, (tile) => [tile.dataset.index, tile.dataset.name]);
-		for (let n = 0; !options.length && n < Math.min(archive.count, 500); n++) {
+		const told = options.length ? 0 : Math.min(archive.count, NAMES_MAX);
+		for (let n = 0; n < told; n++) {
 			try {
 				options.push([n, (await archive.info(n)).name]);
 			} catch (error) {
@@ -206,6 +209,11 @@ class Viewer {
 	}
 	// The lamp goes where its reflection is seen under the pointer.
 	moveLamp([u, v]) {
+		if (this.drawing.scene === 1) {
+			const place = this.surface([u, v]);
+			if (place) this.lamp = [-place.wo[0], place.wo[1], -place.wo[2]];
+			return this.relight();
+		}
 		const length = Math.hypot(u, v), r = Math.min(length, 0.985) / (length || 1), n = [u * r, v * r, Math.sqrt(1 - Math.min(length, 0.985) ** 2)];
 		this.lamp = unit([2 * n[2] * n[0], 2 * n[2] * n[1], 2 * n[2] * n[2] - 1]);
 		this.relight();
@@ -240,7 +248,12 @@ class Viewer {
 		canvas.addEventListener("keydown", (event) => this.key(event));
 		on("v-light", "change", () => { this.expose = true; this.relight(); });
 		on("v-mode", "change", () => { this.find("v-split-label").hidden = this.find("v-mode").value !== "split"; this.draw(); });
-		on("v-scene", "change", () => { this.drawing.scene = Number(this.find("v-scene").value); this.expose = true; this.draw(); });
+		on("v-scene", "change", () => {
+			this.drawing.scene = Number(this.find("v-scene").value);
+			if (this.drawing.scene === 1 && this.lamp[1] < 0.1) this.lamp = LAMP; // it would be under the floor
+			this.expose = true;
+			this.relight();
+		});
 		on("v-split", "input", () => this.draw());
 		on("v-exposure", "input", () => this.draw());
 		on("v-names", "change", () => this.show(this.target(), this.listed, Number(this.find("v-names").value)));
@@ -271,9 +284,12 @@ class Viewer {
 	}
 	key(event) {
 		const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key], exposure = this.find("v-exposure");
-		if (step && this.hasLamp()) {
+		if (step && this.hasLamp() && this.drawing.scene === 0) {
 			const half = unit([this.lamp[0], this.lamp[1], this.lamp[2] + 1]);
 			this.moveLamp([half[0] + 0.05 * step[0], half[1] + 0.05 * step[1]]);
+		} else if (step && this.hasLamp()) {
+			this.lamp = unit([this.lamp[0] + 0.05 * step[0], Math.max(0.05, this.lamp[1] + 0.05 * step[1]), this.lamp[2]]);
+			this.relight();
 		} else if (step) this.turnBy(0.1 * step[0]);
 		else if (event.key === "[" || event.key === "]") this.turnBy(event.key === "[" ? -0.1 : 0.1);
 		else if (event.key === "+" || event.key === "-") {
