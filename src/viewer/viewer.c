@@ -9,7 +9,6 @@
 #include "merl/merl_file.h"
 #include "model/table/table.h"
 #include "render/lights.h"
-#include "source.h"
 
 struct viewer_material {
 	struct table *table;

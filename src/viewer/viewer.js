@@ -87,6 +87,7 @@ class Viewer {
 			if (turn !== this.shown) return material.free(); // another click came
 			this.put(slot, { archive, index, info, layers, material });
 			await this.painted();
+			this.read([0, 0.25]); // something to look at before the pointer comes
 			this.say(this.notice || "");
 			this.cost();
 		} catch (error) {
@@ -102,7 +103,7 @@ class Viewer {
 		const select = this.find("v-layers-" + slot), layers = shown && shown.info.layers || [];
 		select.replaceChildren(...layers.map((layer, n) => new Option(`${n + 1}: ${layer.bytes} bytes, log RMSE ${layer.error.toPrecision(2)}`, n + 1)));
 		if (layers.length) select.value = shown.layers || layers.length;
-		select.disabled = layers.length < 2;
+		select.parentElement.hidden = layers.length < 2;
 		if (slot === "b" && shown && this.find("v-mode").value === "a") this.find("v-mode").value = "split";
 		this.find("v-split-label").hidden = this.find("v-mode").value !== "split";
 		this.find("v-canvas").setAttribute("aria-label", ["a", "b"].filter((s) => this.slots[s]).map((s) => `${s.toUpperCase()}: ${this.slots[s].info.name}`).join(", "));
@@ -193,8 +194,8 @@ class Viewer {
 		}
 		return best;
 	}
-	read(event) {
-		const place = this.surface(this.place(event)), light = place && this.lightAt(place);
+	read(at) {
+		const place = this.surface(at), light = place && this.lightAt(place);
 		if (!light || (!this.slots.a && !this.slots.b)) return;
 		const [wi, wo] = localPair(place.n, light, place.wo), [h, d, phi] = halfDifference(wi, wo), curves = {}, values = [];
 		for (const slot of ["a", "b"]) {
@@ -234,7 +235,7 @@ class Viewer {
 			if (this.hasLamp() && !event.shiftKey) this.moveLamp(last);
 		});
 		canvas.addEventListener("pointermove", (event) => {
-			this.read(event);
+			this.read(this.place(event));
 			if (!last) return;
 			const now = this.place(event);
 			if (this.hasLamp() && !event.shiftKey) this.moveLamp(now);

@@ -1,4 +1,4 @@
-/* zlib.h: of zlib the library uses the CRC-32 alone; WebAssembly has no zlib, so crc32.c stands in for it. */
+/* zlib.h: of zlib the library uses the CRC-32 alone; WebAssembly has no zlib, so zlib.c stands in for it. */
 #ifndef VIEWER_ZLIB_H
 #define VIEWER_ZLIB_H
 
