@@ -13,7 +13,7 @@ SANITIZE ?=
 OBJCOPY  ?= objcopy
 
 # -ffp-contract=off: results do not depend on the machine having fused multiply-add
-REQUIRED := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -Isrc -MMD -MP
+REQUIRED := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -ffunction-sections -fdata-sections -Isrc -MMD -MP
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes
 ifneq ($(SANITIZE),)
 SANFLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -31,6 +31,15 @@ SHARED   := libbrdfpack.so.$(VERSION)
 TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c container.c sha256.c demo.c) src/memory_stream.c
 LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/merl/*.c src/model/*.c src/model/*/*.c src/codec/*.c src/codec/*/*.c src/archive/*.c))
 TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c src/tool/*/*.c)
+# The half that only reads: what is left of these sources when the linker drops what no function of it calls.
+WRITER_C     := $(addprefix src/,output_file.c merl/merl_file.c merl/carried.c merl/spelling.c) \
+	$(addprefix src/codec/record_,carried.c copy.c measure.c pack.c) \
+	$(addprefix src/archive/,gather.c index_write.c merge.c pack.c recover.c temporary.c writer.c)
+READER_C     := $(filter-out $(WRITER_C) $(wildcard src/model/fidelity*.c),$(LIBRARY_C))
+READER_CALLS := $(addprefix bp_,version version_text status_text free table_bytes $(addprefix archive_,open open_memory open_source close \
+	count bytes_read name find info layers sections record table verify) $(addprefix material_,load free loaded evaluate nearest \
+	evaluate_batch sample pdf albedo sample_batch pdf_batch albedo_table))
+READER_O     := $(READER_C:%.c=$(BUILD)/%.o)
 LIBRARY_O    := $(LIBRARY_C:%.c=$(BUILD)/%.o)
 TOOL_O       := $(TOOL_C:%.c=$(BUILD)/%.o)
 TEST_C       := $(wildcard tests/test_*.c)
@@ -52,7 +61,7 @@ TEST_C       := $(filter-out tests/test_bench_%,$(TEST_C))
 TESTS        := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 endif
 
-all: $(BUILD)/libbrdfpack.a $(BUILD)/$(SHARED) $(BUILD)/brdfpack
+all: $(BUILD)/libbrdfpack.a $(BUILD)/libbrdfpack_reader.a $(BUILD)/$(SHARED) $(BUILD)/brdfpack
 
 help:
 	@echo "Targets:"
@@ -76,6 +85,7 @@ help:
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man pages"
 	@echo "  uninstall    removes what install wrote"
+	@echo "  reader-sources  lists the sources of the half that only reads (compile with -Isrc, and -DBP_PORTABLE where there is no POSIX)"
 	@echo "  clean        removes $(BUILD)/"
 	@echo "Knobs:"
 	@echo "  CC=$(CC)  CFLAGS='$(CFLAGS)'  LDFLAGS='$(LDFLAGS)'"
@@ -125,6 +135,13 @@ $(BUILD)/libbrdfpack.a: $(LIBRARY_O)
 	$(Q)$(LD) -r -o $(BUILD)/libbrdfpack.o $^
 	$(Q)$(OBJCOPY) --localize-hidden $(BUILD)/libbrdfpack.o
 	$(Q)rm -f $@ && $(AR) rcs $@ $(BUILD)/libbrdfpack.o
+
+# The same of the reader alone.
+$(BUILD)/libbrdfpack_reader.a: $(READER_O)
+	$(call SAY,AR    $@)
+	$(Q)$(LD) -r --gc-sections $(addprefix -u ,$(READER_CALLS)) -o $(BUILD)/libbrdfpack_reader.o $^
+	$(Q)$(OBJCOPY) --localize-hidden $(BUILD)/libbrdfpack_reader.o
+	$(Q)rm -f $@ && $(AR) rcs $@ $(BUILD)/libbrdfpack_reader.o
 
 $(BUILD)/$(SHARED): $(LIBRARY_O)
 	$(call SAY,LD    $@)
@@ -267,7 +284,7 @@ install: all $(BUILD)/brdfpack.pc
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man3
 	install -m 755 $(BUILD)/brdfpack $(DESTDIR)$(PREFIX)/bin/
 	install -m 644 src/brdfpack.h $(DESTDIR)$(PREFIX)/include/
-	install -m 644 $(BUILD)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/
+	install -m 644 $(BUILD)/libbrdfpack.a $(BUILD)/libbrdfpack_reader.a $(DESTDIR)$(LIBDIR)/
 	install -m 755 $(BUILD)/$(SHARED) $(DESTDIR)$(LIBDIR)/
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
@@ -276,7 +293,7 @@ install: all $(BUILD)/brdfpack.pc
 	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
 
 uninstall:
-	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a
+	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/libbrdfpack_reader.a
 	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man3/libbrdfpack.3
 
@@ -285,6 +302,10 @@ include src/viewer/viewer.mk
 clean:
 	rm -rf $(BUILD)
 
+# For who compiles the reader's sources into a program of their own.
+reader-sources:
+	@echo $(READER_C)
+
 FORCE:
-.PHONY: all help tests pinned check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval bench-scale stress stress-builds faults faults-build fuzz fuzz-build install uninstall clean FORCE
+.PHONY: all help reader-sources tests pinned check check-unit check-cli check-symbols bench bench-build bench-stages bench-ready bench-data bench-methods bench-quick bench-eval bench-scale stress stress-builds faults faults-build fuzz fuzz-build install uninstall clean FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -85,14 +85,16 @@ def main():
 
         line("**mean**", *(average(column) for column in range(5)))
 
-        print("\n| materials | budget | PSNR key: mean, worst | PSNR env: mean, worst | log RMSE: mean, worst |")
-        print("|---|--:|---|---|---|")
+        print("\n| materials | budget | PSNR key: mean, worst | PSNR env: mean, worst | log RMSE: mean, worst |"
+              " dE ITP key: mean, worst |")
+        print("|---|--:|---|---|---|---|")
 
         def summary(what, budget, rows):
-            print("| %s | %s | %.2f, %.2f | %.2f, %.2f | %.5f, %.5f |" % (
+            print("| %s | %s | %.2f, %.2f | %.2f, %.2f | %.5f, %.5f | %.4f, %.4f |" % (
                 what, budget, mean(rows, lambda row: psnr(row, "key")), min(psnr(row, "key") for row in rows.values()),
                 mean(rows, lambda row: psnr(row, "env")), min(psnr(row, "env") for row in rows.values()),
-                mean(rows, lambda row: row["log_rmse"]), max(row["log_rmse"] for row in rows.values())))
+                mean(rows, lambda row: row["log_rmse"]), max(row["log_rmse"] for row in rows.values()),
+                mean(rows, lambda row: row["delta_itp_key"]), max(row["delta_itp_key"] for row in rows.values())))
 
         for budget in (4096, 16384):
             summary("these", "{:,}".format(budget), run(arguments.clean, nine, "--budget", str(budget)))

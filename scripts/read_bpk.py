@@ -5,6 +5,8 @@
     read_bpk.py verify ARCHIVE                   checks everything, decodes every layer
     read_bpk.py decode [--layers N] ARCHIVE NAME decoded values as JSON:
                                                  {"dims": [H, D, P], "rgb": [[...], [...], [...]]}
+    read_bpk.py evaluate [--layers N] ARCHIVE NAME THETA_H THETA_D PHI_D...
+                                                 R G B in 1/sr for each three angles in degrees
 
 Needs Python 3.7 and nothing else. Exit status: 0 ok, 1 the archive is not, 2 usage. Chapter numbers in
 comments are FORMAT.md's.
@@ -676,6 +678,22 @@ def decode_spectral(record, layers):
 DECODERS = {1: decode_paper, 2: decode_spectral}
 
 
+# ---- 6: look-up ----
+
+def look_up(dims, plane, theta_h, theta_d, phi_d):
+    """Between the centres of cells; angles in degrees."""
+    x = min(max(dims[0] * math.sqrt(theta_h / 90) - 0.5, 0), dims[0] - 1)
+    y = min(max(dims[1] * theta_d / 90 - 0.5, 0), dims[1] - 1)
+    z = (dims[2] * phi_d / 180 - 0.5) % dims[2]
+    i, j, k = int(x), int(y), int(z)
+    total = 0.0
+    for a, wa in ((i, 1 - (x - i)), (min(i + 1, dims[0] - 1), x - i)):
+        for b, wb in ((j, 1 - (y - j)), (min(j + 1, dims[1] - 1), y - j)):
+            for c, wc in ((k % dims[2], 1 - (z - k)), ((k + 1) % dims[2], z - k)):
+                total += wa * wb * wc * plane[c + dims[2] * (b + dims[1] * a)]
+    return total
+
+
 # ---- commands ----
 
 def command_list(archive):
@@ -702,6 +720,14 @@ def command_decode(archive, name, layers):
     print()
 
 
+def command_evaluate(archive, name, *rest):
+    *angles, layers = rest
+    record = archive.record(archive.find(name))
+    decoded = record.decode(layers)
+    for at in range(0, len(angles), 3):
+        print(*("%.9g" % look_up(record.dims, plane, *map(float, angles[at:at + 3])) for plane in decoded))
+
+
 def command_compare(archive, path):
     """Every line of a .values file against what this reader decodes: to 1e-5 (8, "Accuracy")."""
     with open(path, encoding="utf-8") as file:
@@ -724,14 +750,17 @@ def main(arguments):
         at = arguments.index("--layers")
         layers = int(arguments[at + 1])
         del arguments[at:at + 2]
-    commands = {"list": (command_list, 0), "verify": (command_verify, 0), "decode": (command_decode, 1), "compare": (command_compare, 1)}
-    if not arguments or arguments[0] not in commands or len(arguments) != 2 + commands[arguments[0]][1]:
+    # how many operands each has behind the archive, and in what steps more
+    commands = {"list": (command_list, 0, 0), "verify": (command_verify, 0, 0), "decode": (command_decode, 1, 0),
+                "evaluate": (command_evaluate, 4, 3), "compare": (command_compare, 1, 0)}
+    function, least, step = commands.get(arguments[0] if arguments else "", (None, 0, 0))
+    more = len(arguments) - 2 - least
+    if function is None or more < 0 or (more % step if step else more):
         print(__doc__, file=sys.stderr)
         return 2
-    function = commands[arguments[0]][0]
     try:
         archive = Archive(arguments[1])
-        function(archive, *arguments[2:], *([layers] if function is command_decode else []))
+        function(archive, *arguments[2:], *([layers] if function in (command_decode, command_evaluate) else []))
     except (Fault, OSError) as fault:
         print(f"read_bpk: {arguments[1]}: {fault}", file=sys.stderr)
         return 1

@@ -14,7 +14,7 @@ set -euo pipefail
 
 # package:command, where any version of the command will do, however it was installed
 build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
-test="libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
+test="gcc-multilib libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"

@@ -6,6 +6,7 @@
 #     house     the plan of src: which wing may include which, and that the map is true
 #     unit      unit tests, built by gcc with warnings as errors
 #     cli       command-line tests (tests/cli)
+#     portable  the reading half: what it links, and its values without the system and on 32 bits
 #     install   installs into a scratch folder; symbols; a consumer built through pkg-config
 #     python    the independent Python reader against the C library
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
@@ -24,7 +25,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
-all_jobs="asan faults fuzz python stress unit pinned cli bench install valgrind clang house"
+all_jobs="asan faults fuzz python stress unit pinned cli bench install portable valgrind clang house"
 on_request="slurm"
 logs=build/logs
 passed=0
@@ -149,6 +150,7 @@ job_asan() {
 }
 job_clang() { build clang; }
 job_install() { build test && check "installed library" "$logs/install.log" tests/install.sh build/test "${test_flags[@]}"; }
+job_portable() { build test && check "the reading half alone" "$logs/portable.log" tests/portable.sh build/test; }
 job_python() {
 	build test || return
 	check "python reader, vectors" "$logs/python-vectors.log" tests/python_reader.sh build/test
@@ -173,7 +175,7 @@ job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECON
 test_flags=(CFLAGS="-O3 -g -Werror")
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
-if wanted unit cli install python valgrind stress faults pinned bench slurm; then prepare test "${test_build[@]}" all tests; fi
+if wanted unit cli install portable python valgrind stress faults pinned bench slurm; then prepare test "${test_build[@]}" all tests; fi
 if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
 if wanted pinned; then prepare pinned "${test_build[@]}" build/test/tests/pinned; fi
 if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi

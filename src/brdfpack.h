@@ -1,5 +1,5 @@
 /*
- * brdfpack.h: read archives of measured materials. The only installed header.
+ * brdfpack.h: read and write archives of measured materials. The only installed header.
  *
  * Words. A *lattice* is the raw table of one measured isotropic material over
  * (theta_h, theta_d, phi_d); a *record* is one fitted material's bytes in an
@@ -23,11 +23,36 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-#ifdef __GNUC__
-#pragma GCC visibility push(default) /* the library hides every symbol that is not declared here */
+
+/*
+ * What stands before every function. A program that links the DLL on Windows defines BP_SHARED; whoever compiles the library
+ * into one defines BP_BUILD too. Elsewhere the library hides every symbol but these.
+ */
+#ifndef BP_API
+#if defined _WIN32 && defined BP_SHARED
+#ifdef BP_BUILD
+#define BP_API __declspec(dllexport)
+#else
+#define BP_API __declspec(dllimport)
+#endif
+#elif defined __GNUC__
+#define BP_API __attribute__((visibility("default")))
+#else
+#define BP_API
+#endif
 #endif
 
-#define BP_VERSION "0.1.0"
+/* The version of this header: text, and numbers for the preprocessor. */
+#define BP_VERSION "0.2.0"
+#define BP_VERSION_MAJOR 0
+#define BP_VERSION_MINOR 2
+#define BP_VERSION_PATCH 0
+#define BP_VERSION_NUMBER (BP_VERSION_MAJOR * 10000 + BP_VERSION_MINOR * 100 + BP_VERSION_PATCH)
+
+/* The version of the library that runs, as BP_VERSION_NUMBER: another one than the header's where an older one is installed. */
+BP_API int bp_version(void);
+/* The same as text: static. */
+BP_API const char *bp_version_text(void);
 
 /* Status of a call. The values are pinned: they never change their meaning. */
 typedef enum bp_status {
@@ -41,7 +66,8 @@ typedef enum bp_status {
 	BP_ERROR_CHECKSUM = 7,    /* damaged: a CRC32 differs */
 	BP_ERROR_LIMIT = 8,       /* beyond a limit that the specification sets */
 	BP_ERROR_NOT_FOUND = 9,   /* no material of that name or number */
-	BP_ERROR_BAD_INPUT = 10   /* a measured file that cannot be packed */
+	BP_ERROR_BAD_INPUT = 10,  /* a measured material that cannot be packed */
+	BP_ERROR_CANCELLED = 11   /* the caller's callback ended it */
 } bp_status;
 
 #define BP_NO_OFFSET UINT64_MAX
@@ -54,13 +80,18 @@ typedef struct bp_error {
 } bp_error;
 
 /* A short text for a status: static, never NULL. */
-const char *bp_status_text(bp_status status);
+BP_API const char *bp_status_text(bp_status status);
+
+/*
+ * Frees what a function says is freed with bp_free; NULL is allowed. On Windows a DLL's free may be another than the program's.
+ */
+BP_API void bp_free(void *block);
 
 /* ---- Archives ---- */
 
 /*
  * An open archive. It never changes after opening, except for a counter, so any number of threads may use
- * it at once; only bp_archive_close must come last. It reads with pread and maps nothing: a file that is
+ * it at once; only bp_archive_close must come last. It reads and maps nothing: a file that is
  * cut or overwritten while open gives errors, never a crash. Every byte is checked against its CRC32
  * before it is used.
  */
@@ -75,30 +106,54 @@ typedef struct bp_archive bp_archive;
  * 64 + 4096 bytes, whatever its size. The caller closes *out.
  * Errors: BP_ERROR_IO, BP_ERROR_NOT_OURS, BP_ERROR_UNSUPPORTED, BP_ERROR_CORRUPT, BP_ERROR_CHECKSUM, BP_ERROR_MEMORY.
  */
-bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error);
-void bp_archive_close(bp_archive *archive); /* NULL is allowed */
+BP_API bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error);
+/*
+ * The same for an archive of `count` bytes in memory, which must stay as they are until bp_archive_close; nothing is copied.
+ * Errors: as bp_archive_open, without BP_ERROR_IO.
+ */
+BP_API bp_status bp_archive_open_memory(const void *bytes, size_t count, bp_archive **out, bp_error *error);
+
+/*
+ * Reads `count` bytes (at least 1) at `offset`, within the size that was told, and returns 0, or anything else where it
+ * cannot: the function that wanted them then fails with BP_ERROR_IO. Called from the threads that use the archive, several at once.
+ */
+typedef int bp_read_fn(void *user, uint64_t offset, void *bytes, size_t count);
+
+/* Where an archive is read from. The caller sets struct_bytes. */
+typedef struct bp_source {
+	size_t struct_bytes;        /* sizeof(bp_source) */
+	bp_read_fn *read;
+	void (*close)(void *user);  /* NULL, or called once by bp_archive_close; not where opening fails */
+	void *user;
+	uint64_t bytes;             /* of the archive */
+} bp_source;
+
+/* The same through callbacks: an engine's own file system, a browser. *source is copied. BP_ERROR_ARGUMENT for a bad struct_bytes. */
+BP_API bp_status bp_archive_open_source(const bp_source *source, bp_archive **out, bp_error *error);
+
+BP_API void bp_archive_close(bp_archive *archive); /* NULL is allowed */
 
 /* Number of materials. */
-uint64_t bp_archive_count(const bp_archive *archive);
+BP_API uint64_t bp_archive_count(const bp_archive *archive);
 
 /* Bytes read from the file so far, over all threads. */
-uint64_t bp_archive_bytes_read(const bp_archive *archive);
+BP_API uint64_t bp_archive_bytes_read(const bp_archive *archive);
 
 /*
  * The name of material `index`, 0 to count - 1, in the order of the names' bytes; UTF-8, NUL-terminated.
  * Reads at most one path of index pages (4096 bytes each; two or three in practice).
  * Errors: BP_ERROR_NOT_FOUND (index too large), and those of damaged or unreadable files.
  */
-bp_status bp_archive_name(const bp_archive *archive, uint64_t index, char name[BP_NAME_BYTES_MAX + 1], bp_error *error);
+BP_API bp_status bp_archive_name(const bp_archive *archive, uint64_t index, char name[BP_NAME_BYTES_MAX + 1], bp_error *error);
 
 /* The number of the material called `name`; BP_ERROR_NOT_FOUND when there is none. Reads as bp_archive_name does. */
-bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t *index, bp_error *error);
+BP_API bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t *index, bp_error *error);
 
 /* One layer: what loading it costs and what error is left. */
 typedef struct bp_layer {
 	uint32_t bytes;          /* of the record up to and including this layer, head included */
 	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) over valid cells and channels, e decoded, b measured */
-	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller of the two cosines */
+	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller of the two cosines at the cell's lower corner */
 	double largest_relative; /* largest |e - b|/(b + 1e-2) */
 } bp_layer;
 
@@ -124,7 +179,7 @@ typedef struct bp_channel {
 	uint32_t converged;  /* 1 or 0 */
 } bp_channel;
 
-/* All that a record's head says. The caller sets struct_bytes; later versions may append members. */
+/* What a record's head says of all of it. The caller sets struct_bytes; later versions may append members. */
 typedef struct bp_material_info {
 	size_t struct_bytes;       /* sizeof(bp_material_info), set by the caller */
 	char name[BP_NAME_BYTES_MAX + 1];
@@ -134,10 +189,8 @@ typedef struct bp_material_info {
 	uint32_t head_bytes, record_bytes;
 	uint64_t record_offset;    /* in the file */
 	bp_channel channels[3];    /* R, G, B */
-	uint32_t layer_count;
-	bp_layer layers[BP_LAYERS_MAX];
-	uint32_t section_count;
-	bp_section sections[BP_SECTIONS_MAX];
+	uint32_t layer_count;      /* up to BP_LAYERS_MAX: bp_archive_layers */
+	uint32_t section_count;    /* up to BP_SECTIONS_MAX: bp_archive_sections */
 	uint32_t left_out;         /* pairs that are independent and not stored: bit 0 c_hd, bit 1 c_hphi, bit 2 all c_dphi|h */
 	uint32_t effort;           /* options it was made with */
 	uint32_t budget_bytes;
@@ -153,7 +206,59 @@ typedef struct bp_material_info {
  * Errors: BP_ERROR_ARGUMENT (struct_bytes is not that of a version of this header), BP_ERROR_NOT_FOUND, and
  * those of damaged or unreadable files.
  */
-bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material_info *info, bp_error *error);
+BP_API bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material_info *info, bp_error *error);
+
+/*
+ * The layers, or the sections, of material `index`, in their order: fills at most `capacity` elements of element_bytes =
+ * sizeof(bp_layer) or sizeof(bp_section) each, and sets *count (NULL is allowed) to how many there are. Reads as bp_archive_info does.
+ */
+BP_API bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_layer *layers, uint32_t capacity,
+                            uint32_t *count, bp_error *error);
+BP_API bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_section *sections, uint32_t capacity,
+                              uint32_t *count, bp_error *error);
+
+/*
+ * The whole record of material `index`, checked: *record is freed with bp_free. What bp_writer_add takes, so that a record goes
+ * from archive to archive without being packed again.
+ */
+BP_API bp_status bp_archive_record(const bp_archive *archive, uint64_t index, uint8_t **record, size_t *record_bytes, bp_error *error);
+
+/* ---- Decoded tables ---- */
+
+/* How a number of a table is stored, in the machine's byte order. */
+typedef enum bp_number {
+	BP_NUMBER_FLOAT = 0,  /* 32 bits */
+	BP_NUMBER_DOUBLE = 1, /* 64 bits */
+	BP_NUMBER_HALF = 2    /* 16 bits, IEEE 754 binary16, to nearest even; what exceeds 65504 is 65504 */
+} bp_number;
+
+/*
+ * In which order. Cell (i, j, k) of theta_h, theta_d, phi_d has number n = k + P (j + D i) of N = H D P.
+ * Planes: channel c of cell n is value n + c N, as in MERL files. Interleaved: it is value 3 n + c, a float3 or half3 per cell.
+ */
+typedef enum bp_layout { BP_LAYOUT_PLANES = 0, BP_LAYOUT_INTERLEAVED = 1 } bp_layout;
+
+/* What to decode, and how to lay it out. Zeroed but for struct_bytes: the whole record, planes of float, -1 below the horizon. */
+typedef struct bp_table_options {
+	size_t struct_bytes;  /* sizeof(bp_table_options) */
+	double max_log_rmse;  /* as in bp_load_options */
+	bp_number number;
+	bp_layout layout;
+	int continued;        /* 0: -1 where a cell lies below the horizon, beyond anything that was measured (bp_material_info's horizon_limit), as in
+	                         extracted files; 1: the model's smooth continuation there */
+} bp_table_options;
+
+/* Bytes of a table of H x D x P cells: 3 values each. options NULL: as if zeroed. 0 for an unknown number. */
+BP_API size_t bp_table_bytes(uint32_t theta_h, uint32_t theta_d, uint32_t phi_d, const bp_table_options *options);
+
+/*
+ * Decodes material `index` into the caller's `values`, `bytes` of them, which must be bp_table_bytes of its lattice. Values are
+ * in 1/sr, R G B, each of its cell's centre. This is what `brdfpack extract` writes, but for MERL's scale; what bp_material_evaluate reads
+ * is rounded once more (bp_form). After a failure the values are unspecified. Needs some 17 bytes per cell while it works.
+ * Errors: BP_ERROR_ARGUMENT (struct_bytes, number, layout, continued, max_log_rmse, bytes), and those of bp_material_load.
+ */
+BP_API bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values, size_t bytes,
+                           bp_error *error);
 
 /* One thing that is wrong with an archive. */
 typedef struct bp_problem {
@@ -171,7 +276,7 @@ typedef int bp_problem_fn(void *user, const bp_problem *problem);
  * gap, overlap or trailing byte. Goes on after damage as far as the index reaches, and reports each problem.
  * BP_OK when there is none; otherwise the status of the first, which is also in *error. BP_ERROR_ARGUMENT for unknown flags.
  */
-bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error);
+BP_API bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error);
 
 /* ---- Materials ---- */
 
@@ -214,6 +319,16 @@ typedef enum bp_colour {
 	BP_COLOUR_MEAN = 1 /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
 } bp_colour;
 
+/*
+ * Where the memory comes from that a material keeps. alloc returns `bytes` bytes at a multiple of `alignment` (a power of two up to 2^21), or
+ * NULL; release takes back what alloc gave. Both are called within bp_material_load and bp_material_free only, by the calling thread.
+ */
+typedef struct bp_allocator {
+	void *(*alloc)(void *user, size_t bytes, size_t alignment);
+	void (*release)(void *user, void *block);
+	void *user;
+} bp_allocator;
+
 /* What to load. Zeroed but for struct_bytes it asks for the whole record, in RGB, expanded, without sampling. */
 typedef struct bp_load_options {
 	size_t struct_bytes;  /* sizeof(bp_load_options) */
@@ -221,6 +336,8 @@ typedef struct bp_load_options {
 	bp_form form;
 	bp_colour colour;
 	int sampling;         /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */
+	const bp_allocator *allocator; /* NULL: malloc. Copied; all that bp_loaded counts in memory_bytes comes from it, and what is needed
+	                                  only while loading from malloc */
 } bp_load_options;
 
 /* What was loaded. */
@@ -233,33 +350,34 @@ typedef struct bp_loaded {
 	bp_form form;
 	bp_colour colour;
 	int sampling;
+	uint32_t theta_h, theta_d, phi_d; /* values along each axis: the lattice's cells, of a preview half of them */
 } bp_loaded;
 
 /*
  * Loads material `index` of the archive; options NULL: as if zeroed. The caller frees *out. Several threads
- * may load from one archive at once. Beside the result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a
+ * may load from one archive at once. The bits do not depend on the caller's rounding mode or flushing of denormals. Beside the result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a
  * MERL lattice; more only for records of megabytes.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an unknown form or colour, sampling neither 0 nor 1, max_log_rmse negative
  * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
  */
-bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out,
+BP_API bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out,
                            bp_error *error);
-void bp_material_free(bp_material *material); /* NULL is allowed */
+BP_API void bp_material_free(bp_material *material); /* NULL is allowed */
 
 /* Fills *loaded; BP_ERROR_ARGUMENT when struct_bytes is not that of a version of this header. */
-bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_error *error);
+BP_API bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_error *error);
 
 /* f(wi, wo), interpolated. An unusable direction gives 0. */
-void bp_material_evaluate(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
+BP_API void bp_material_evaluate(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
 
 /* f of the cell into which the directions fall, as the MERL database's own look-up gives it; of a preview, of the first of two cells along each axis. */
-void bp_material_nearest(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
+BP_API void bp_material_nearest(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
 
 /*
  * bp_material_evaluate for `count` pairs in separate arrays of components: wi[0] holds the x of every wi, and so on.
  * The same values to the bit, several times faster from some dozens on. Outputs must not overlap anything else.
  */
-void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
+BP_API void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
                                 float *const rgb[3]);
 
 /*
@@ -268,24 +386,110 @@ void bp_material_evaluate_batch(const bp_material *material, size_t count, const
  * z > 0, and the weight f cos theta_i / pdf is finite. Numbers outside [0, 1) are clamped, NaN counts as 0.
  * An unusable wo, or a material that was loaded without sampling, gives density 0 and wi = 0.
  */
-float bp_material_sample(const bp_material *material, const float wo[3], const float u[3], float wi[3]);
+BP_API float bp_material_sample(const bp_material *material, const float wo[3], const float u[3], float wi[3]);
 
 /*
  * The density of bp_material_sample. Over the hemisphere of wi it integrates to 1 and is above 0 everywhere. An unusable
  * direction, or a material that was loaded without sampling, gives 0.
  */
-float bp_material_pdf(const bp_material *material, const float wi[3], const float wo[3]);
+BP_API float bp_material_pdf(const bp_material *material, const float wi[3], const float wo[3]);
 
 /*
  * The directional albedo: the integral of f cos theta_i over wi, for theta_o in radians in [0, pi/2). Other angles, NaN, and
  * a material that was loaded without sampling give 0. Measurements can exceed 1. Some milliseconds (a quadrature)
  * when an angle is asked for first, some ten nanoseconds when it or those around it were; the value is the same.
  */
-void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3]);
+BP_API void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3]);
 
-#ifdef __GNUC__
-#pragma GCC visibility pop
-#endif
+/*
+ * bp_material_sample and bp_material_pdf for `count` directions or pairs in separate arrays of components, as in
+ * bp_material_evaluate_batch; the same values to the bit. Outputs must not overlap anything else.
+ */
+BP_API void bp_material_sample_batch(const bp_material *material, size_t count, const float *const wo[3], const float *const u[3], float *const wi[3],
+                              float *pdf);
+BP_API void bp_material_pdf_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3], float *pdf);
+
+/*
+ * The albedo as a table over the cosine: rgb[3 n + c] is bp_material_albedo where cos theta_o = (n + 1/2)/count. Renderers on
+ * graphics processors keep 256 of them, as a texture that is looked up at cos theta_o. BP_ERROR_ARGUMENT where count is 0 or above 65536, or
+ * the material was loaded without sampling. All angles for the first time take some 0.1 s.
+ */
+BP_API bp_status bp_material_albedo_table(const bp_material *material, size_t count, float *rgb, bp_error *error);
+
+/* ---- Packing ---- */
+
+/* One measured material in memory. The caller sets struct_bytes and owns all that it points to. */
+typedef struct bp_measured {
+	size_t struct_bytes;              /* sizeof(bp_measured) */
+	uint32_t theta_h, theta_d, phi_d; /* cells along each axis: 4 to 1024 each, at most 2^24 in all */
+	bp_number number;                 /* BP_NUMBER_FLOAT or BP_NUMBER_DOUBLE */
+	bp_layout layout;
+	const void *values;               /* 3 per cell, R G B, in `layout` */
+	const uint8_t *mask;              /* NULL, or per cell, 0: not measured */
+	double scale[3];                  /* times a value this is 1/sr; all 0: 1. MERL files: 1/1500, 1.15/1500, 1.66/1500 */
+	uint64_t source_bytes;            /* of the file that it comes from; recorded, 0: none */
+	uint8_t source_sha256[32];        /* of that file; recorded, zeros: none */
+} bp_measured;
+
+/*
+ * Is told how much of the work is done, from 0 to 1, by the calling thread, many times; a result other than 0 cancels, after which
+ * nothing is left. A share may be told twice, and falls back where records of several sizes are tried (max_error).
+ */
+typedef int bp_progress_fn(void *user, double share);
+
+/* How to pack: what `brdfpack build` has as options. Zeroed but for struct_bytes: its defaults. */
+typedef struct bp_pack_options {
+	size_t struct_bytes;      /* sizeof(bp_pack_options) */
+	uint32_t profile;         /* 1: paper, 2 or 0: spectral */
+	uint32_t budget_bytes;    /* largest record, 1000 to 4,000,000; 0: 60,400 */
+	double max_error;         /* > 0, 1e-6 to 10: instead, the smallest record whose log RMSE is at most this; a budget must not be given */
+	uint32_t effort;          /* 1 to 9; 0: 5 */
+	bp_progress_fn *progress; /* NULL: none */
+	void *user;               /* its first argument */
+} bp_pack_options;
+
+/*
+ * Packs one material under a name (UTF-8, 1 to 255 bytes, no control character, no `/`, not `.` or `..`) into a record, which is freed with bp_free.
+ * A cell with a mask of 0, or any channel that is negative, NaN or infinite, counts as not measured. The record depends on the
+ * values, name, source and options only: with those of a file it is the one that `brdfpack build` makes. Uses the calling thread; several may
+ * pack at once. options NULL: as if zeroed. Needs some 90 MB for a MERL lattice.
+ * Errors: BP_ERROR_ARGUMENT (struct_bytes, an option, the name), BP_ERROR_LIMIT (the extents, or a budget or bound that cannot be
+ * kept), BP_ERROR_BAD_INPUT (no valid cell), BP_ERROR_CANCELLED, BP_ERROR_MEMORY.
+ */
+BP_API bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_options *options, uint8_t **record, size_t *record_bytes,
+                  bp_error *error);
+
+/* A copy of a record under another name, freed with bp_free. The record is checked as bp_writer_add does. */
+BP_API bp_status bp_record_rename(const uint8_t *record, size_t record_bytes, const char *name, uint8_t **out, size_t *out_bytes, bp_error *error);
+
+/* ---- Writing archives ---- */
+
+/*
+ * An archive under construction: it keeps copies of its records in memory until it is whole. For one thread at a time.
+ */
+typedef struct bp_writer bp_writer;
+
+BP_API bp_status bp_writer_create(bp_writer **out, bp_error *error);
+BP_API void bp_writer_free(bp_writer *writer); /* NULL is allowed; nothing is written */
+
+/*
+ * Adds one record, in any order of names; copies it. Head and checksums are checked.
+ * Errors: BP_ERROR_ARGUMENT for a name that is there already, BP_ERROR_MEMORY, and those of damaged records. The writer is as before then.
+ */
+BP_API bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error);
+
+/* How many records it has. */
+BP_API uint64_t bp_writer_count(const bp_writer *writer);
+
+/*
+ * Writes the archive to a file beside `path`, syncs it, and renames it over `path`: what was there before stays as it was
+ * unless all of this succeeds. The writer stays usable. Errors: BP_ERROR_IO, BP_ERROR_MEMORY.
+ */
+BP_API bp_status bp_writer_save(const bp_writer *writer, const char *path, bp_error *error);
+
+/* The same into memory: *bytes is freed with bp_free. The bytes are those that bp_writer_save writes. */
+BP_API bp_status bp_writer_save_memory(const bp_writer *writer, uint8_t **bytes, size_t *count, bp_error *error);
+
 #ifdef __cplusplus
 }
 #endif

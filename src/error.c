@@ -61,6 +61,7 @@ const char *bp_status_text(bp_status status)
 	case BP_ERROR_LIMIT: return "limit exceeded";
 	case BP_ERROR_NOT_FOUND: return "not found";
 	case BP_ERROR_BAD_INPUT: return "bad input";
+	case BP_ERROR_CANCELLED: return "cancelled";
 	}
 	return "unknown status";
 }

@@ -2,42 +2,59 @@
 
 #include <stdint.h>
 #include <stdlib.h>
-#include <sys/mman.h>
+
+#include "system.h"
 
 enum { CACHE_LINE = 64, HUGE_PAGE = 1 << 21 };
 
+static _Thread_local const bp_allocator *allocator_now;
+
 void memory_prefer_huge(void *block, size_t bytes)
 {
-#ifdef MADV_HUGEPAGE
 	const size_t huge = HUGE_PAGE;
 	const uintptr_t start = ((uintptr_t)block + huge - 1) / huge * huge, end = ((uintptr_t)block + bytes) / huge * huge;
 	if (end > start)
-		madvise((void *)start, end - start, MADV_HUGEPAGE);
-#else
-	(void)block, (void)bytes;
-#endif
+		system_prefer_huge((void *)start, end - start);
 }
 
-static void *alloc_aligned(size_t bytes)
+static size_t alignment_for(size_t bytes)
 {
-	void *block = NULL;
-	if (posix_memalign(&block, bytes < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE, bytes) != 0)
-		return NULL;
-	memory_prefer_huge(block, bytes);
+	return bytes < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE;
+}
+
+static void *alloc_aligned(size_t bytes, size_t alignment)
+{
+	void *block = system_alloc(bytes, alignment);
+	if (block)
+		memory_prefer_huge(block, bytes);
 	return block;
-}
-
-static size_t huge_pages_round_up(size_t bytes)
-{
-	return (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
 }
 
 void *memory_alloc(size_t bytes)
 {
-	return alloc_aligned(bytes < HUGE_PAGE / 2 ? bytes : huge_pages_round_up(bytes));
+	const size_t alignment = alignment_for(bytes);
+	return alloc_aligned(alignment == HUGE_PAGE ? (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE : bytes, alignment);
 }
 
 void *memory_alloc_kept(size_t bytes)
 {
-	return bytes < HUGE_PAGE ? memory_alloc(bytes) : alloc_aligned(bytes);
+	const size_t alignment = alignment_for(bytes);
+	if (allocator_now)
+		return allocator_now->alloc(allocator_now->user, bytes, alignment);
+	return bytes < HUGE_PAGE ? memory_alloc(bytes) : alloc_aligned(bytes, alignment);
+}
+
+void memory_free_kept(void *block)
+{
+	if (!allocator_now)
+		free(block);
+	else if (block)
+		allocator_now->release(allocator_now->user, block);
+}
+
+const bp_allocator *memory_allocator_set(const bp_allocator *allocator)
+{
+	const bp_allocator *before = allocator_now;
+	allocator_now = allocator;
+	return before;
 }

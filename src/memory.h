@@ -6,6 +6,8 @@
 
 #include <stddef.h>
 
+#include "brdfpack.h"
+
 /*
  * Asks for huge pages where a block that has not been written yet holds some: filling a table then takes 20 page faults instead
  * of 9,000, and walking through it fewer misses. A hint: failure changes nothing but speed.
@@ -16,9 +18,16 @@ void memory_prefer_huge(void *block, size_t bytes);
 void *memory_alloc(size_t bytes);
 
 /*
- * The same for a table that is kept as long as its material: beyond the first, huge pages only where it fills them. One that is
- * filled in part lies in memory as a whole: 4 MB for the compact form's 2.6, 10 for the expanded form's 8.8.
+ * What is kept as long as its material. From half a huge page on it asks for huge pages, but beyond the first only where a block fills
+ * them: one that is filled in part lies in memory as a whole, 4 MB for the compact form's 2.6, 10 for the expanded form's 8.8.
+ *
+ * It comes from the allocator that the calling thread has set, and goes back to it: malloc where none is. The public functions that
+ * make or free a material set the material's own.
  */
 void *memory_alloc_kept(size_t bytes);
+void memory_free_kept(void *block); /* NULL is allowed */
+
+/* Sets the thread's allocator of kept memory, NULL for malloc, and returns the one before; *allocator stays the caller's. */
+const bp_allocator *memory_allocator_set(const bp_allocator *allocator);
 
 #endif

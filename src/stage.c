@@ -1,7 +1,8 @@
 #include "stage.h"
 
 #include <stddef.h>
-#include <time.h>
+
+#include "system.h"
 
 _Thread_local struct stage_clock *stage_clock_running;
 
@@ -11,16 +12,9 @@ const char *stage_name(enum stage stage)
 	return NAMES[stage];
 }
 
-static double thread_seconds(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 void stage_clock_start(struct stage_clock *clock)
 {
-	*clock = (struct stage_clock){.now = STAGE_REST, .since = thread_seconds()};
+	*clock = (struct stage_clock){.now = STAGE_REST, .since = system_thread_seconds()};
 	stage_clock_running = clock;
 }
 
@@ -28,7 +22,7 @@ enum stage stage_switch(enum stage stage)
 {
 	struct stage_clock *clock = stage_clock_running;
 	const enum stage before = clock->now;
-	const double now = thread_seconds();
+	const double now = system_thread_seconds();
 	clock->seconds[before] += now - clock->since;
 	clock->since = now;
 	clock->now = stage;

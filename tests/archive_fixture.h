@@ -61,7 +61,7 @@ FIXTURE void fixture_head(struct record_head *head, const char *name)
 	head->horizon_limit = -0.0625;
 	for (int c = 0; c < 3; c++)
 		head->colour[c] = (struct colour_fit){ 0.25 * (c + 1), 1.5 - c, 7u + (uint32_t)c, 1, 0.125 };
-	head->options = (struct fit_options){ PROFILE_PAPER, 60400, 0, 5 };
+	head->options = (struct fit_options){.profile = PROFILE_PAPER, .budget_bytes = 60400, .effort = 5};
 	head->source.bytes = 34992012;
 	for (int i = 0; i < SHA256_BYTES; i++)
 		head->source.sha256[i] = (uint8_t)(i * 7 + name[0]);

@@ -137,7 +137,7 @@ def map_check(src, files):
 def lengths_check(files):
     for path, text in files.items():
         lines = text.count("\n")
-        if lines > LINES_MOST:
+        if lines > LINES_MOST and path != "brdfpack.h":  # one page of documentation, whatever its length
             yield f"{path} has {lines} lines: more than one reason to change?"
 
 

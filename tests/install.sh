@@ -29,6 +29,10 @@ cc -std=c17 "${flags[@]}" -o "$scratch/shared" tests/consumer.c "${shared[@]}"
 cc -std=c17 "${flags[@]}" -static -o "$scratch/static" tests/consumer.c "${static[@]}"
 [ "$("$scratch/shared" "$archive")" = "$count" ]
 [ "$("$scratch/static" "$archive")" = "$count" ]
+# the library's own answer to which version it is
+printf '#include <brdfpack.h>\n#include <stdio.h>\nint main(void) { printf("%%s %%d\\n", bp_version_text(), bp_version() == BP_VERSION_NUMBER); return 0; }\n' >"$scratch/version.c"
+cc -std=c17 "${flags[@]}" -o "$scratch/version" "$scratch/version.c" "${shared[@]}"
+[ "$("$scratch/version")" = "$(pkg-config --modversion brdfpack) 1" ]
 if command -v g++ >/dev/null; then
 	g++ -x c++ "${flags[@]}" -o "$scratch/cpp" tests/consumer.c "${shared[@]}"
 	[ "$("$scratch/cpp" "$archive")" = "$count" ]

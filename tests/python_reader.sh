@@ -2,7 +2,8 @@
 # python_reader.sh BUILD: compares the independent reader (scripts/read_bpk.py) with the library.
 #
 # Every archive of format-spec/vectors must be judged alike, and every decoded value agree to 1e-5; then the
-# same for records that were fitted in this very build (BUILD/tests/test_record_pack makes them).
+# same for records that were fitted in this very build (BUILD/tests/test_record_pack makes them), and for what both
+# evaluate at some angles, to 1e-3: the library's table has 10 bits of mantissa.
 set -eu
 build=${1:?usage: tests/python_reader.sh BUILD}
 cd "$(dirname "$0")/.."
@@ -47,6 +48,12 @@ for values in "$folder"/*.values; do
 	count=$((count + 1))
 	python3 "$reader" verify "${values%.values}.bpk" >"$folder/said" || fail "$values"
 	python3 "$reader" compare "${values%.values}.bpk" "$values" || fail "$values"
+	looks=${values%.values}.looks
+	# shellcheck disable=SC2046 # angles are words
+	python3 "$reader" evaluate "${values%.values}.bpk" "$(cut -d' ' -f1 "$values" | head -1)" $(cut -d' ' -f1-3 "$looks") >"$folder/said" || fail "$looks"
+	paste -d' ' "$looks" "$folder/said" | awk '
+		{ for (c = 4; c < 7; c++) if (($c - $(c + 3)) ^ 2 > (1e-3 * $c) ^ 2) bad++ }
+		END { exit bad > 0 || NR < 10 }' || fail "$looks"
 done
 
 echo "python_reader: $count comparisons, $bad failed"

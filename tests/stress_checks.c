@@ -96,11 +96,11 @@ static double last_error(const struct packed_table *packed)
 	return packed->head.layers[packed->head.layer_count - 1].fidelity.log_rmse;
 }
 
-/* phi_d -> pi - phi_d: corner k goes to P - k, corner 0 stays. */
+/* phi_d -> pi - phi_d: the centre of cell k goes to that of cell P - 1 - k. */
 static size_t mirrored(struct lattice_dims d, size_t n)
 {
 	const size_t k = n % d.phi_d;
-	return n - k + (d.phi_d - k) % d.phi_d;
+	return n - k + (d.phi_d - 1 - k);
 }
 
 static void check_mirror(const struct trial *trial, const struct packed_table *base)

@@ -69,12 +69,12 @@ static void edwards_gives_the_values_worked_out_by_hand(void **state)
 static void the_cells_angles_agree_with_the_directions(void **state)
 {
 	const struct lattice_dims dims = {90, 90, 180};
-	struct corner_tables tables;
+	struct centre_tables tables;
 	(void)state;
 
-	assert_int_equal(corner_tables_alloc(dims, &tables, NULL), BP_OK);
+	assert_int_equal(centre_tables_alloc(dims, &tables, NULL), BP_OK);
 	for (int n = 0; n < 3; n++) {
-		/* 10, 25, 50 degrees lie at 30, 47.43, 67.08; the other two axes on corners */
+		/* 10, 25, 50 degrees lie at 30, 47.43, 67.08 */
 		const double at[3][3] = {{30, 30, 60}, {47.43416490252569, 50, 90}, {67.08203932499369, 20, 30}};
 		double found[3];
 		lattice_coordinates(dims, WI[n], WO[n], found);
@@ -85,13 +85,23 @@ static void the_cells_angles_agree_with_the_directions(void **state)
 		for (int axis = 0; axis < 3; axis++)
 			assert_close(found[axis], at[n][axis], 1e-9);
 	}
-	/* phi_d turned by pi swaps the two: the corner's larger cosine may be either */
-	struct cell_angles a = cell_angles_at(&tables, 30, 30, 60), b = cell_angles_of(WI[0], WO[0]);
+	/* the centre of cell (30, 40, 60), rotated by hand */
+	const double h = 30.5 * 30.5 / 8100 * M_PI_2, d = 40.5 / 90 * M_PI_2, p = 60.5 / 180 * M_PI;
+	const double x = sin(d) * cos(p), y = sin(d) * sin(p), z = cos(d);
+	const double wi[3] = {cos(h) * x + sin(h) * z, y, cos(h) * z - sin(h) * x};
+	const double wo[3] = {-cos(h) * x + sin(h) * z, -y, cos(h) * z + sin(h) * x};
+	double found[3], beyond;
+	lattice_coordinates(dims, wi, wo, found);
+	assert_true(fabs(found[0] - 30.5) < 1e-9 && fabs(found[1] - 40.5) < 1e-9 && fabs(found[2] - 60.5) < 1e-9);
+	struct cell_angles a = cell_angles_at(&tables, 30, 40, 60), b = cell_angles_of(wi, wo);
 	assert_close(a.cos_i, b.cos_i, 1e-12);
 	assert_close(a.cos_o, b.cos_o, 1e-12);
 	assert_close(a.cos_h, b.cos_h, 1e-12);
 	assert_close(a.cos_d, b.cos_d, 1e-12);
-	corner_tables_free(&tables);
+	centre_tables_free(&tables);
+	assert_true(centre_before(0.2, 90, &beyond) == 0 && beyond == 0);
+	assert_true(centre_before(3.75, 90, &beyond) == 3 && beyond == 0.25);
+	assert_true(centre_before(89.9, 90, &beyond) == 89 && beyond == 0);
 }
 
 /* On 4 x 4 x 4 cells; the measures integrated numerically in Python, the cosines from rotated vectors. */
@@ -101,7 +111,7 @@ static void cells_weigh_their_measure_times_the_squared_cosine(void **state)
 		size_t at;
 		uint32_t cell;
 		double weight;
-	} expected[] = {{0, 0, 1.9923104212196116e-05}, {5, 5, 0.00012090406702608368}, {20, 20, 0.009556389457618168}, {54, 62, 0.012686735798174026}};
+	} expected[] = {{0, 0, 0.00119337105232833}, {5, 5, 0.0020706387732306697}, {20, 22, 0.02930306966053244}, {39, 51, 0.02500056761055221}};
 	const struct lattice_dims dims = {4, 4, 4};
 	struct lattice lattice;
 	struct lobe_sample sample;
@@ -111,7 +121,7 @@ static void cells_weigh_their_measure_times_the_squared_cosine(void **state)
 	for (size_t cell = 0; cell < 64; cell++)
 		lattice.valid[cell] = 1;
 	assert_int_equal(lobe_sample_take(&lattice, 1, 1, &sample, NULL), BP_OK);
-	assert_int_equal(sample.count, 55); /* the others lie beyond 80 degrees */
+	assert_int_equal(sample.count, 40); /* the others lie beyond 80 degrees */
 	for (size_t n = 0; n < sizeof expected / sizeof *expected; n++) {
 		assert_int_equal(sample.cell[expected[n].at], expected[n].cell);
 		assert_close(sample.weight[expected[n].at], expected[n].weight, 1e-7);

@@ -112,10 +112,10 @@ static void the_table_comes_back_and_holes_are_ignored(void **unused)
 	lattice_free(&lattice);
 }
 
-static void an_evaluation_at_a_corner_gives_the_tables_value(void **unused)
+static void an_evaluation_at_a_centre_gives_the_tables_value(void **unused)
 {
-	/* theta_h, theta_d, phi_d = 22.5, 27, 45 degrees: corners 12, 6, 8 of 24, 20, 32 */
-	const double h = M_PI / 8, d = 0.15 * M_PI, p = M_PI / 4;
+	/* the centre of cell (12, 6, 8) of 24, 20, 32 */
+	const double h = 12.5 * 12.5 / (24 * 24) * M_PI_2, d = 6.5 / 20 * M_PI_2, p = 8.5 / 32 * M_PI;
 	const double a = sin(d) * cos(p), b = sin(d) * sin(p), c = cos(d);
 	const double wi[3] = {cos(h) * a + sin(h) * c, b, cos(h) * c - sin(h) * a};
 	const double wo[3] = {-cos(h) * a + sin(h) * c, -b, cos(h) * c + sin(h) * a};
@@ -183,7 +183,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_tensor_of_two_terms_is_recovered),
 		cmocka_unit_test(the_table_comes_back_and_holes_are_ignored),
-		cmocka_unit_test(an_evaluation_at_a_corner_gives_the_tables_value),
+		cmocka_unit_test(an_evaluation_at_a_centre_gives_the_tables_value),
 		cmocka_unit_test(the_size_follows_the_budget),
 		cmocka_unit_test(a_hole_takes_the_nearest_value_along_theta_d),
 	};

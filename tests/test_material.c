@@ -14,7 +14,7 @@ static uint8_t *packed(int n, size_t *bytes)
 {
 	struct lattice lattice;
 	struct record_source source = {.bytes = 1};
-	struct fit_options options = {PROFILE_PAPER, 60400, 0, 5};
+	struct fit_options options = {.profile = PROFILE_PAPER, .budget_bytes = 60400, .effort = 5};
 	char name[32];
 	uint8_t *record = NULL;
 	bp_error error;
@@ -73,7 +73,7 @@ static void a_loaded_material_gives_what_its_decoded_table_gives(void **state)
 	bp_archive *archive = opened();
 	for (int form = 0; form < 2; form++)
 		for (int colour = 0; colour < 2; colour++) {
-			bp_load_options options = {sizeof options, 0, (bp_form)form, (bp_colour)colour, 0};
+			bp_load_options options = {.struct_bytes = sizeof options, .form = (bp_form)form, .colour = (bp_colour)colour};
 			bp_material *material = NULL;
 			struct model *model = NULL;
 			struct expansion expansion;
@@ -151,7 +151,10 @@ static void options_decide_what_is_there_and_it_says_so(void **state)
 
 	assert_int_equal(bp_material_loaded(whole, &loaded, NULL), BP_OK);
 	assert_true(loaded.form == BP_FORM_EXPANDED && loaded.colour == BP_COLOUR_RGB && loaded.sampling == 0);
-	assert_true(loaded.layers == info.layer_count && loaded.log_rmse == info.layers[info.layer_count - 1].log_rmse);
+	bp_layer layers[BP_LAYERS_MAX];
+	assert_int_equal(bp_archive_layers(archive, 0, sizeof *layers, layers, BP_LAYERS_MAX, NULL, NULL), BP_OK);
+	assert_true(loaded.layers == info.layer_count && loaded.log_rmse == layers[info.layer_count - 1].log_rmse);
+	assert_true(loaded.theta_h == 12 && loaded.theta_d == 10 && loaded.phi_d == 24);
 	assert_true(loaded.read_bytes == info.record_bytes);
 	size_t bytes = loaded.memory_bytes;
 	assert_true(bytes > 12 * 10 * 24 * 6 && bytes < 12 * 10 * 25 * 6 + 2000);

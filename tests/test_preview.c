@@ -12,7 +12,7 @@ static void a_preview_holds_every_second_value(void **state)
 	const enum profile profiles[] = {PROFILE_PAPER, PROFILE_SPECTRAL};
 	for (int p = 0; p < 2; p++) {
 		struct lattice lattice;
-		struct fit_options options = {profiles[p], 60400, 0, 5};
+		struct fit_options options = {.profile = profiles[p], .budget_bytes = 60400, .effort = 5};
 		struct model *fitted = NULL;
 		struct expansion whole, half;
 		struct lattice_dims dims = {24, 20, 48}, small;
@@ -87,7 +87,7 @@ static uint64_t bytes_to_load(const char *path, const bp_load_options *options, 
 static void a_preview_of_one_in_a_hundred_reads_at_most_24_KiB_and_all_of_it_16_KiB_more_than_its_record(void **state)
 {
 	(void)state;
-	const struct fit_options options = {PROFILE_SPECTRAL, 60400, 0, 5};
+	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = 60400, .effort = 5};
 	const struct record_source source = {.bytes = 1};
 	struct lattice lattice;
 	struct record_head head;
@@ -122,7 +122,7 @@ static void pairs_that_are_independent_are_neither_stored_nor_read(void **state)
 {
 	(void)state;
 	const struct lattice_dims dims = {12, 10, 24};
-	const struct fit_options options = {PROFILE_PAPER, 60400, 0, 5};
+	const struct fit_options options = {.profile = PROFILE_PAPER, .budget_bytes = 60400, .effort = 5};
 	const struct record_source source = {.bytes = 1};
 	size_t bytes[2];
 	for (int independent = 0; independent < 2; independent++) {

@@ -14,6 +14,27 @@ static bp_archive *opened(const char *path)
 	return archive;
 }
 
+static void layers_and_sections_are_told(const bp_archive *archive, const bp_material_info *info)
+{
+	bp_layer layers[2];
+	bp_section sections[3] = {{0}, {0}, {.type = 77}};
+	uint32_t count = 0;
+	assert_int_equal(bp_archive_layers(archive, 2, sizeof *layers, layers, 2, &count, NULL), BP_OK);
+	assert_int_equal(count, 2);
+	assert_int_equal(layers[1].bytes, info->record_bytes);
+	assert_int_equal(layers[0].bytes, info->head_bytes + 10000);
+	assert_true(layers[0].log_rmse == 0.5);
+	/* fewer than there are: no more are written */
+	assert_int_equal(bp_archive_sections(archive, 2, sizeof *sections, sections, 2, &count, NULL), BP_OK);
+	assert_int_equal(count, 4);
+	assert_true(sections[1].type == SECTION_SLICES && sections[1].bytes == 5000 && sections[1].layer == 0 && isnan(sections[1].error));
+	assert_true(sections[0].flags == SECTION_REQUIRED && sections[0].error == 0.125 && sections[2].type == 77);
+	assert_int_equal(bp_archive_sections(archive, 2, sizeof *sections - 4, sections, 2, &count, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(bp_archive_layers(archive, 2, sizeof *layers, NULL, 2, &count, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(bp_archive_layers(archive, 2, sizeof *layers, NULL, 0, &count, NULL), BP_OK);
+	assert_int_equal(bp_archive_layers(archive, 4, sizeof *layers, layers, 2, &count, NULL), BP_ERROR_NOT_FOUND);
+}
+
 static void an_archive_tells_its_materials_without_loading_them(void **state)
 {
 	bp_archive *archive;
@@ -32,12 +53,10 @@ static void an_archive_tells_its_materials_without_loading_them(void **state)
 	assert_int_equal(info.theta_h, 4);
 	assert_int_equal(info.phi_d, 6);
 	assert_int_equal(info.layer_count, 2);
-	assert_int_equal(info.layers[1].bytes, info.record_bytes);
-	assert_int_equal(info.layers[0].bytes, info.head_bytes + 10000);
-	assert_true(info.layers[0].log_rmse == 0.5);
 	assert_int_equal(info.section_count, 4);
 	assert_true(info.channels[2].diffuse == 0.75);
 	assert_int_equal(info.source_bytes, 34992012);
+	layers_and_sections_are_told(archive, &info);
 	info.struct_bytes = 8;
 	assert_int_equal(bp_archive_info(archive, 2, &info, NULL), BP_ERROR_ARGUMENT);
 	info.struct_bytes = sizeof info;

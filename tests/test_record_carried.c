@@ -19,7 +19,7 @@
 #include "packed_fixture.h"
 
 static const struct lattice_dims DIMS = {20, 16, 24};
-static const struct fit_options USUAL[2] = {{PROFILE_PAPER, 9000, 0, 5}, {PROFILE_SPECTRAL, 9000, 0, 5}};
+static const struct fit_options USUAL[2] = {{.profile = PROFILE_PAPER, .budget_bytes = 9000, .effort = 5}, {.profile = PROFILE_SPECTRAL, .budget_bytes = 9000, .effort = 5}};
 static const struct record_source MEASURED = {.bytes = 1, .sha256 = {1}, .nonfinite_count = 3};
 
 /* A record and the table that it decodes to. */
@@ -187,7 +187,7 @@ static void another_request_is_packed_anew(void **state)
 	assert_false(kept(&file, "fives", options));
 	assert_true(kept(&file, "four", options));
 	assert_false(kept(&file, "m", USUAL[0]));
-	options = (struct fit_options){PROFILE_SPECTRAL, 100000, 0.01, 5};
+	options = (struct fit_options){.profile = PROFILE_SPECTRAL, .budget_bytes = 100000, .max_error = 0.01, .effort = 5};
 	assert_false(kept(&file, "m", options)); /* a smaller record might do */
 	assert_false(kept(&file, "no/name", USUAL[1])); /* record_pack says why */
 	file_free(&file);
@@ -281,7 +281,7 @@ static void a_record_that_does_not_decode_layer_by_layer_is_not_kept(void **stat
 		packed_make(&USUAL[p], &first);
 		assert_true(first.head.layer_count > 1);
 		for (int n = 0; n < 4; n++) {
-			const struct fit_options options = {USUAL[p].profile, 20000, 0, 5};
+			const struct fit_options options = {.profile = USUAL[p].profile, .budget_bytes = 20000, .effort = 5};
 			struct file file;
 			uint8_t *record;
 			size_t bytes;

@@ -1,10 +1,11 @@
 /*
  * From a lattice to a record and back. `test_record_pack --write FOLDER` writes the archives of these
- * lattices and their values for tests/python_reader.sh.
+ * lattices, their values and what is evaluated at some angles for tests/python_reader.sh.
  */
 #include "values.h"
 
 #include "model/fidelity.h"
+#include "trilinear.h"
 
 /* Every test runs for both profiles. */
 static enum profile tested = PROFILE_PAPER;
@@ -181,7 +182,7 @@ static void sizes_of_all_orders_pack_and_come_back_finite(void **state)
 
 static void an_illegal_name_is_refused(void **state)
 {
-	struct fit_options options = { tested, 60400, 0, 5 };
+	struct fit_options options = { .profile = tested, .budget_bytes = 60400, .effort = 5 };
 	struct record_source source = { 0 };
 	struct lattice lattice;
 	uint8_t *record = NULL;
@@ -224,22 +225,51 @@ static void damage_behind_a_right_checksum_never_crashes(void **state)
 	lattice_free(&lattice);
 }
 
+/* What the library evaluates at some angles: theta_h, theta_d, phi_d in degrees, R, G, B. The half cells at the ends are among them. */
+static void looks_write(const char *archive_path, const char *path)
+{
+	bp_archive *archive = NULL;
+	bp_material *material = NULL;
+	bp_material_info info = {.struct_bytes = sizeof info};
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	assert_int_equal(bp_archive_open(archive_path, &archive, NULL), BP_OK);
+	assert_int_equal(bp_archive_info(archive, 0, &info, NULL), BP_OK);
+	assert_int_equal(bp_material_load(archive, 0, NULL, &material, NULL), BP_OK);
+	const struct lattice_dims dims = {info.theta_h, info.theta_d, info.phi_d};
+	for (int n = 0; n < 40; n++) {
+		const double h = dims.theta_h * fmod(0.02 + n * 0.618034, 1), d = dims.theta_d * fmod(0.01 + n * 0.414214, 1);
+		const double p = dims.phi_d * fmod(0.005 + n * 0.259921, 1);
+		float wi[3], wo[3], rgb[3];
+		if (!directions_at(dims, h, d, p, wi, wo))
+			continue;
+		bp_material_evaluate(material, wi, wo, rgb);
+		fprintf(file, "%.12g %.12g %.12g %.9g %.9g %.9g\n", h * h / (dims.theta_h * dims.theta_h) * 90, d / dims.theta_d * 90,
+		        p / dims.phi_d * 180, (double)rgb[0], (double)rgb[1], (double)rgb[2]);
+	}
+	bp_material_free(material);
+	bp_archive_close(archive);
+	assert_int_equal(fclose(file), 0);
+}
+
 static void write_all(const char *folder)
 {
 	for (int i = 0; i < DIMS_COUNT; i++) {
-		char path[512], values[512];
+		char path[512], values[512], looks[512];
 		struct archive_writer *writer = NULL;
 		struct lattice lattice;
 		uint8_t *record;
 		size_t bytes;
 		snprintf(path, sizeof path, "%s/fitted-%d-%d.bpk", folder, (int)tested, i);
 		snprintf(values, sizeof values, "%s/fitted-%d-%d.values", folder, (int)tested, i);
+		snprintf(looks, sizeof looks, "%s/fitted-%d-%d.looks", folder, (int)tested, i);
 		lattice_make(DIMS[i], 1, &lattice);
 		assert_int_equal(pack(&lattice, 60400, 0, &record, &bytes, NULL, NULL), BP_OK);
 		assert_int_equal(archive_writer_open(path, &writer, NULL), BP_OK);
 		assert_int_equal(archive_writer_add(writer, record, bytes, NULL), BP_OK);
 		assert_int_equal(archive_writer_commit(writer, NULL), BP_OK);
 		values_write(path, values);
+		looks_write(path, looks);
 		free(record);
 		lattice_free(&lattice);
 	}

@@ -24,7 +24,7 @@ static void directions(int n, float wi[3], float wo[3])
 /* Packs and decodes a coloured lobe. */
 static struct model *model_make(enum profile profile, struct lattice_dims dims, double unit)
 {
-	const struct fit_options options = {profile, 60400, 0, 5};
+	const struct fit_options options = {.profile = profile, .budget_bytes = 60400, .effort = 5};
 	const struct record_source source = {.bytes = 1};
 	struct lattice lattice;
 	struct record_head head;

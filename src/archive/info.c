@@ -25,15 +25,7 @@ static void info_fill(const struct record_head *head, uint64_t offset, bp_materi
 		info->channels[c] = (bp_channel){ fit->diffuse, fit->specular, fit->rejected, fit->iterations, fit->converged };
 	}
 	info->layer_count = head->layer_count;
-	for (uint32_t l = 0; l < head->layer_count; l++) {
-		const struct fidelity *figures = &head->layers[l].fidelity;
-		info->layers[l] = (bp_layer){ head->layers[l].bytes, figures->log_rmse, figures->cube_root_rmse, figures->largest_relative };
-	}
 	info->section_count = head->section_count;
-	for (uint32_t i = 0; i < head->section_count; i++) {
-		const struct record_section *from = &head->sections[i];
-		info->sections[i] = (bp_section){ from->type, from->codec, from->version, from->layer, from->flags, from->bytes, from->error };
-	}
 	info->left_out = head->left_out;
 	info->effort = (uint32_t)head->options.effort;
 	info->budget_bytes = head->options.budget_bytes;
@@ -44,23 +36,92 @@ static void info_fill(const struct record_head *head, uint64_t offset, bp_materi
 	info->horizon_limit = head->horizon_limit;
 }
 
-bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material_info *info, bp_error *error)
+/* The head of material `index`, and where its record is. */
+static bp_status head_find(const bp_archive *archive, uint64_t index, struct index_entry *entry, struct record_head *head, bp_error *error)
 {
 	struct index_page leaf;
+	leaf.count = 0;
+	const bp_status status = archive_entry(archive, index, &leaf, entry, error);
+	return status ? status : archive_entry_head(archive, entry, head, error);
+}
+
+bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material_info *info, bp_error *error)
+{
 	struct index_entry entry;
 	struct record_head head;
 	bp_material_info full;
 	bp_status status;
 	if (!info || info->struct_bytes != sizeof full)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_material_info)");
-	leaf.count = 0;
-	status = archive_entry(archive, index, &leaf, &entry, error);
-	if (!status)
-		status = archive_entry_head(archive, &entry, &head, error);
+	status = head_find(archive, index, &entry, &head, error);
 	if (status)
 		return status;
 	info_fill(&head, entry.offset, &full);
 	full.struct_bytes = sizeof full;
 	*info = full;
+	return BP_OK;
+}
+
+static bp_status element_check(size_t element_bytes, size_t known, const void *elements, uint32_t capacity, bp_error *error)
+{
+	if (element_bytes != known)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "element_bytes is %zu, an element has %zu", element_bytes, known);
+	if (capacity && !elements)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no place for %u elements", capacity);
+	return BP_OK;
+}
+
+bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_layer *layers, uint32_t capacity,
+                            uint32_t *count, bp_error *error)
+{
+	struct index_entry entry;
+	struct record_head head;
+	bp_status status = element_check(element_bytes, sizeof *layers, layers, capacity, error);
+	if (!status)
+		status = head_find(archive, index, &entry, &head, error);
+	if (status)
+		return status;
+	for (uint32_t l = 0; l < head.layer_count && l < capacity; l++) {
+		const struct fidelity *figures = &head.layers[l].fidelity;
+		layers[l] = (bp_layer){ head.layers[l].bytes, figures->log_rmse, figures->cube_root_rmse, figures->largest_relative };
+	}
+	if (count)
+		*count = head.layer_count;
+	return BP_OK;
+}
+
+bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_section *sections, uint32_t capacity,
+                              uint32_t *count, bp_error *error)
+{
+	struct index_entry entry;
+	struct record_head head;
+	bp_status status = element_check(element_bytes, sizeof *sections, sections, capacity, error);
+	if (!status)
+		status = head_find(archive, index, &entry, &head, error);
+	if (status)
+		return status;
+	for (uint32_t i = 0; i < head.section_count && i < capacity; i++) {
+		const struct record_section *from = &head.sections[i];
+		sections[i] = (bp_section){ from->type, from->codec, from->version, from->layer, from->flags, from->bytes, from->error };
+	}
+	if (count)
+		*count = head.section_count;
+	return BP_OK;
+}
+
+bp_status bp_archive_record(const bp_archive *archive, uint64_t index, uint8_t **record, size_t *record_bytes, bp_error *error)
+{
+	struct index_page leaf;
+	struct index_entry entry;
+	struct record_head head;
+	uint8_t *bytes = NULL;
+	leaf.count = 0;
+	bp_status status = archive_entry(archive, index, &leaf, &entry, error);
+	if (!status)
+		status = archive_entry_record(archive, &entry, &head, &bytes, error);
+	if (status)
+		return status;
+	*record = bytes;
+	*record_bytes = head.record_bytes;
 	return BP_OK;
 }

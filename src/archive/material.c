@@ -1,18 +1,28 @@
 /* Loading a material to render from: record -> model -> expansion -> table, and the sampler beside it. */
 #include <math.h>
-#include <stdlib.h>
 
+#include "environment.h"
 #include "error.h"
+#include "memory.h"
 #include "model/table/table.h"
 #include "model/sample/sample.h"
 #include "reader.h"
+
+enum { ALBEDO_TABLE_MAX = 65536 };
 
 struct bp_material {
 	struct table *table;
 	struct sampler *sampler;     /* NULL: loaded without */
 	struct albedo_cache *albedo; /* the same */
 	bp_loaded loaded;
+	bp_allocator allocator;      /* where all of this lies; alloc NULL: malloc */
 };
+
+/* For the calls that make or free a material. Returns what memory_allocator_set wants afterwards. */
+static const bp_allocator *allocator_enter(const bp_allocator *allocator)
+{
+	return memory_allocator_set(allocator && allocator->alloc ? allocator : NULL);
+}
 
 static bp_status options_check(const bp_load_options *options, bp_error *error)
 {
@@ -25,18 +35,11 @@ static bp_status options_check(const bp_load_options *options, bp_error *error)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no memory form %d", (int)options->form);
 	if (options->colour != BP_COLOUR_RGB && options->colour != BP_COLOUR_MEAN)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no colour option %d", (int)options->colour);
+	if (options->allocator && (!options->allocator->alloc || !options->allocator->release))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an allocator needs both of its functions");
 	if (options->sampling != 0 && options->sampling != 1)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "sampling is %d, it must be 0 or 1", options->sampling);
 	return BP_OK;
-}
-
-/* The fewest layers whose error is at most this; all where none satisfies it or 0 is asked for. */
-static uint32_t layers_for(const struct record_head *head, double max_log_rmse)
-{
-	for (uint32_t n = 0; max_log_rmse > 0 && n < head->layer_count; n++)
-		if (head->layers[n].fidelity.log_rmse <= max_log_rmse)
-			return n + 1;
-	return head->layer_count;
 }
 
 /* An achromatic load does without the sections that only colour needs. */
@@ -68,7 +71,29 @@ static bp_status material_build(const struct model *model, const bp_load_options
 		status = sampler_build(material->table, &material->sampler, error);
 	if (!status && options->sampling)
 		status = albedo_cache_make(&material->albedo, error);
+	if (!preview)
+		half = model->dims;
 	material->loaded.form = options->form == BP_FORM_PREVIEW && !preview ? BP_FORM_EXPANDED : options->form;
+	material->loaded.theta_h = half.theta_h;
+	material->loaded.theta_d = half.theta_d;
+	material->loaded.phi_d = half.phi_d;
+	return status;
+}
+
+/* Decodes and builds; *material is the caller's to free in any case. The arithmetic and the allocator are as they should be. */
+static bp_status material_fill(const bp_archive *archive, const struct index_entry *entry, struct record_head *head, uint32_t layers,
+                               const bp_load_options *options, bp_material **out, bp_error *error)
+{
+	struct model *model = NULL;
+	bp_material *material = memory_alloc_kept(sizeof *material);
+	if (!material)
+		return error_memory(error, sizeof *material);
+	*material = (bp_material){.allocator = options->allocator ? *options->allocator : (bp_allocator){0}};
+	*out = material;
+	bp_status status = archive_entry_load(archive, entry, head, layers, &model, error);
+	if (!status)
+		status = material_build(model, options, material, error);
+	model_free(model);
 	return status;
 }
 
@@ -78,7 +103,8 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
-	struct model *model = NULL;
+	bp_material *material = NULL;
+	fenv_t before;
 	bp_status status;
 
 	options = options ? options : &whole;
@@ -92,16 +118,14 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	if (status)
 		return status;
 
-	bp_material *material = calloc(1, sizeof *material);
-	if (!material)
-		return error_memory(error, sizeof *material);
-	const uint32_t layers = layers_for(&head, options->max_log_rmse);
+	const uint32_t layers = record_layers_for(&head, options->max_log_rmse);
 	if (options->colour == BP_COLOUR_MEAN)
 		colour_sections_drop(&head);
-	status = archive_entry_load(archive, &entry, &head, layers, &model, error);
-	if (!status)
-		status = material_build(model, options, material, error);
-	model_free(model);
+	environment_enter(&before);
+	const bp_allocator *allocator_before = allocator_enter(options->allocator);
+	status = material_fill(archive, &entry, &head, layers, options, &material, error);
+	memory_allocator_set(allocator_before);
+	environment_leave(&before);
 	if (status) {
 		bp_material_free(material);
 		return status;
@@ -115,6 +139,9 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 		.form = material->loaded.form,
 		.colour = options->colour,
 		.sampling = options->sampling,
+		.theta_h = material->loaded.theta_h,
+		.theta_d = material->loaded.theta_d,
+		.phi_d = material->loaded.phi_d,
 	};
 	*out = material;
 	return BP_OK;
@@ -124,10 +151,13 @@ void bp_material_free(bp_material *material)
 {
 	if (!material)
 		return;
+	const bp_allocator allocator = material->allocator; /* it outlives what it lies in */
+	const bp_allocator *before = allocator_enter(&allocator);
 	table_free(material->table);
 	sampler_free(material->sampler);
 	albedo_cache_free(material->albedo);
-	free(material);
+	memory_free_kept(material);
+	memory_allocator_set(before);
 }
 
 bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_error *error)
@@ -173,4 +203,32 @@ void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3]
 		albedo_cached(material->albedo, material->table, theta_o, rgb);
 	else
 		rgb[0] = rgb[1] = rgb[2] = 0;
+}
+
+void bp_material_sample_batch(const bp_material *material, size_t count, const float *const wo[3], const float *const u[3], float *const wi[3],
+                              float *pdf)
+{
+	for (size_t n = 0; n < count; n++) {
+		float in[3];
+		pdf[n] = bp_material_sample(material, (const float[]){wo[0][n], wo[1][n], wo[2][n]}, (const float[]){u[0][n], u[1][n], u[2][n]}, in);
+		for (int c = 0; c < 3; c++)
+			wi[c][n] = in[c];
+	}
+}
+
+void bp_material_pdf_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3], float *pdf)
+{
+	for (size_t n = 0; n < count; n++)
+		pdf[n] = bp_material_pdf(material, (const float[]){wi[0][n], wi[1][n], wi[2][n]}, (const float[]){wo[0][n], wo[1][n], wo[2][n]});
+}
+
+bp_status bp_material_albedo_table(const bp_material *material, size_t count, float *rgb, bp_error *error)
+{
+	if (count < 1 || count > ALBEDO_TABLE_MAX || !rgb)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an albedo table has 1 to %d entries, not %zu", ALBEDO_TABLE_MAX, count);
+	if (!material->albedo)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the material was loaded without sampling, so it has no albedo");
+	for (size_t n = 0; n < count; n++)
+		bp_material_albedo(material, (float)acos(((double)n + 0.5) / (double)count), rgb + 3 * n);
+	return BP_OK;
 }

@@ -1,18 +1,16 @@
 #include "reader.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "name.h"
 #include "error.h"
+#include "system.h"
 
 struct bp_archive {
-	int fd;
-	char *path;
+	struct system_file *file; /* NULL: read through source */
+	bp_source source;
+	char *path;               /* "" where there is none */
 	struct archive_header header;
 	_Atomic uint64_t *bytes_read; /* apart, so that a const handle can count */
 	struct index_page root;       /* count 0 when the archive is empty */
@@ -28,23 +26,24 @@ static bp_status offset_shift(bp_status status, uint64_t base, bp_error *error)
 
 bp_status archive_read(const struct bp_archive *archive, uint64_t offset, void *bytes, size_t count, bp_error *error)
 {
-	size_t done = 0;
-	while (done < count) {
-		ssize_t got = pread(archive->fd, (uint8_t *)bytes + done, count - done, (off_t)(offset + done));
-		if (got < 0 && errno == EINTR)
-			continue;
-		if (got < 0)
-			return error_set(error, BP_ERROR_IO, offset + done, "%s: cannot read: %s", archive->path, strerror(errno));
-		if (got == 0) {
-			struct stat now;
-			uint64_t end = fstat(archive->fd, &now) == 0 && (uint64_t)now.st_size < offset + done ? (uint64_t)now.st_size : offset + done;
-			return error_set(error, BP_ERROR_CORRUPT, end, "the file ends here, bytes up to %llu were expected",
-			                 (unsigned long long)(offset + count));
-		}
-		done += (size_t)got;
-		*archive->bytes_read += (uint64_t)got;
+	size_t got = 0;
+	uint64_t end = archive->source.bytes;
+	if (archive->file) {
+		bp_error reason;
+		if (system_file_read(archive->file, offset, bytes, count, &got, &reason))
+			return error_set(error, BP_ERROR_IO, reason.offset, "%s: cannot read: %s", archive->path, reason.message);
+		if (got < count)
+			end = system_file_bytes(archive->file, offset + got);
+	} else if (offset <= end && count <= end - offset) {
+		if (count && archive->source.read(archive->source.user, offset, bytes, count) != 0)
+			return error_set(error, BP_ERROR_IO, offset, "the caller's function cannot read %zu bytes here", count);
+		got = count;
 	}
-	return BP_OK;
+	*archive->bytes_read += got;
+	if (got == count)
+		return BP_OK;
+	return error_set(error, BP_ERROR_CORRUPT, end < offset + got ? end : offset + got, "the file ends here, bytes up to %llu were expected",
+	                 (unsigned long long)(offset + count));
 }
 
 const struct archive_header *archive_header(const struct bp_archive *archive)
@@ -74,19 +73,6 @@ bp_status archive_page_read(const struct bp_archive *archive, const struct page_
 	return status;
 }
 
-static bp_status file_open(const char *path, int *fd, uint64_t *file_bytes, bp_error *error)
-{
-	struct stat found;
-	/* Not blocking, so that a FIFO is refused rather than waited for. */
-	*fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-	if (*fd < 0 || fstat(*fd, &found) != 0)
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
-	if (!S_ISREG(found.st_mode))
-		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "not a regular file");
-	*file_bytes = (uint64_t)found.st_size;
-	return BP_OK;
-}
-
 static bp_status header_and_root_read(struct bp_archive *archive, uint64_t file_bytes, bp_error *error)
 {
 	uint8_t bytes[ARCHIVE_HEADER_BYTES];
@@ -101,27 +87,12 @@ static bp_status header_and_root_read(struct bp_archive *archive, uint64_t file_
 	return archive_page_read(archive, &root, &archive->root, error);
 }
 
-bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
+/* Opens what *archive already reads from; closes it where that fails. */
+static bp_status archive_begin(struct bp_archive *archive, uint64_t file_bytes, bp_archive **out, bp_error *error)
 {
-	struct bp_archive *archive;
-	uint64_t file_bytes = 0;
-	bp_status status;
-
-	if (!path || !out)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a path and a place for the handle are needed");
-	archive = calloc(1, sizeof *archive);
-	if (!archive)
-		return error_memory(error, sizeof *archive);
-	archive->fd = -1;
-	archive->path = strdup(path);
-	archive->bytes_read = calloc(1, sizeof *archive->bytes_read);
-	if (!archive->path || !archive->bytes_read)
-		status = error_memory(error, strlen(path) + 1);
-	else
-		status = file_open(path, &archive->fd, &file_bytes, error);
-	if (!status)
-		status = header_and_root_read(archive, file_bytes, error);
+	const bp_status status = header_and_root_read(archive, file_bytes, error);
 	if (status) {
+		archive->source.close = NULL; /* it stays the caller's */
 		bp_archive_close(archive);
 		return status;
 	}
@@ -129,12 +100,78 @@ bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
 	return BP_OK;
 }
 
+static bp_status archive_new(const char *path, struct bp_archive **out, bp_error *error)
+{
+	struct bp_archive *archive = calloc(1, sizeof *archive);
+	if (!archive)
+		return error_memory(error, sizeof *archive);
+	const size_t path_bytes = strlen(path) + 1;
+	archive->path = malloc(path_bytes);
+	archive->bytes_read = calloc(1, sizeof *archive->bytes_read);
+	if (!archive->path || !archive->bytes_read) {
+		bp_archive_close(archive);
+		return error_memory(error, path_bytes);
+	}
+	memcpy(archive->path, path, path_bytes);
+	*out = archive;
+	return BP_OK;
+}
+
+bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
+{
+	struct bp_archive *archive = NULL;
+	uint64_t file_bytes = 0;
+	bp_status status;
+
+	if (!path || !out)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a path and a place for the handle are needed");
+	status = archive_new(path, &archive, error);
+	if (status)
+		return status;
+	status = system_file_open(path, &archive->file, &file_bytes, error);
+	if (status) {
+		bp_archive_close(archive);
+		return status;
+	}
+	return archive_begin(archive, file_bytes, out, error);
+}
+
+bp_status bp_archive_open_source(const bp_source *source, bp_archive **out, bp_error *error)
+{
+	struct bp_archive *archive = NULL;
+	bp_status status;
+
+	if (!source || !out || source->struct_bytes != sizeof *source || !source->read)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a bp_source with struct_bytes and read, and a place for the handle are needed");
+	status = archive_new("", &archive, error);
+	if (status)
+		return status;
+	archive->source = *source;
+	return archive_begin(archive, source->bytes, out, error);
+}
+
+static int memory_read(void *user, uint64_t offset, void *bytes, size_t count)
+{
+	memcpy(bytes, (const uint8_t *)user + offset, count);
+	return 0;
+}
+
+bp_status bp_archive_open_memory(const void *bytes, size_t count, bp_archive **out, bp_error *error)
+{
+	/* user is not written through, whatever its type */
+	const bp_source source = {.struct_bytes = sizeof source, .read = memory_read, .user = (void *)(uintptr_t)bytes, .bytes = count};
+	if (!bytes)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the archive's bytes are needed");
+	return bp_archive_open_source(&source, out, error);
+}
+
 void bp_archive_close(bp_archive *archive)
 {
 	if (!archive)
 		return;
-	if (archive->fd >= 0)
-		close(archive->fd);
+	if (archive->source.close)
+		archive->source.close(archive->source.user);
+	system_file_close(archive->file);
 	free(archive->path);
 	free((void *)archive->bytes_read);
 	free(archive);

@@ -1,6 +1,7 @@
 #include "writer.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -15,6 +16,8 @@ enum { BUFFER_BYTES = 1 << 18 };
 
 struct archive_writer {
 	struct temporary_file file;
+	bool in_memory;            /* then the bytes go to: */
+	struct byte_buffer memory;
 	struct index_builder index;
 	uint64_t file_bytes; /* written so far, the buffer included */
 	size_t buffered;
@@ -24,6 +27,10 @@ struct archive_writer {
 
 static bp_status bytes_put(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
 {
+	if (writer->in_memory) {
+		write_bytes(&writer->memory, bytes, count);
+		return writer->memory.failed ? error_memory(error, writer->memory.count + count) : BP_OK;
+	}
 	while (count) {
 		ssize_t put = write(writer->file.fd, bytes, count);
 		if (put < 0 && errno == EINTR)
@@ -60,15 +67,18 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 	return status;
 }
 
-bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
+/* path NULL: in memory */
+static bp_status writer_open(const char *path, struct archive_writer **out, bp_error *error)
 {
 	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES];
 	struct archive_writer *writer = calloc(1, sizeof *writer);
-	bp_status status;
+	bp_status status = BP_OK;
 	if (!writer)
 		return error_memory(error, sizeof *writer);
 	writer->file.fd = -1;
-	status = temporary_create(path, &writer->file, error);
+	writer->in_memory = !path;
+	if (path)
+		status = temporary_create(path, &writer->file, error);
 	if (!status)
 		status = writer_append(writer, header_to_come, sizeof header_to_come, error);
 	if (status) {
@@ -77,6 +87,16 @@ bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_
 	}
 	*out = writer;
 	return BP_OK;
+}
+
+bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
+{
+	return writer_open(path ? path : "", out, error);
+}
+
+bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error)
+{
+	return writer_open(NULL, out, error);
 }
 
 const char *archive_writer_temporary(const struct archive_writer *writer)
@@ -111,12 +131,17 @@ static bp_status header_put(struct archive_writer *writer, const struct archive_
 {
 	uint8_t bytes[ARCHIVE_HEADER_BYTES];
 	archive_header_write(header, bytes);
+	if (writer->in_memory) {
+		memcpy(writer->memory.bytes, bytes, sizeof bytes);
+		return BP_OK;
+	}
 	if (lseek(writer->file.fd, 0, SEEK_SET) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot seek: %s", writer->file.target, strerror(errno));
 	return bytes_put(writer, bytes, sizeof bytes, error);
 }
 
-bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
+/* Index and header: the archive is whole then, where it is. */
+static bp_status writer_end(struct archive_writer *writer, bp_error *error)
 {
 	struct archive_header header = {
 		.major = ARCHIVE_MAJOR, .minor = ARCHIVE_MINOR, .count = writer->index.count, .index_offset = writer->file_bytes,
@@ -125,10 +150,26 @@ bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
 	if (!status)
 		status = buffer_flush(writer, error);
 	header.file_bytes = writer->file_bytes;
-	if (!status)
-		status = header_put(writer, &header, error);
+	return status ? status : header_put(writer, &header, error);
+}
+
+bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
+{
+	bp_status status = writer_end(writer, error);
 	if (!status)
 		status = temporary_commit(&writer->file, error);
+	archive_writer_discard(writer);
+	return status;
+}
+
+bp_status archive_writer_commit_memory(struct archive_writer *writer, uint8_t **bytes, size_t *count, bp_error *error)
+{
+	const bp_status status = writer_end(writer, error);
+	if (!status) {
+		*bytes = writer->memory.bytes;
+		*count = writer->memory.count;
+		writer->memory = (struct byte_buffer){0};
+	}
 	archive_writer_discard(writer);
 	return status;
 }
@@ -138,6 +179,7 @@ void archive_writer_discard(struct archive_writer *writer)
 	if (!writer)
 		return;
 	temporary_discard(&writer->file);
+	byte_buffer_free(&writer->memory);
 	index_builder_free(&writer->index);
 	free(writer);
 }

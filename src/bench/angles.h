@@ -1,7 +1,7 @@
 /*
  * angles.h: the benchmark's geometry: half/difference angles of a cell and of a pair of directions.
  *
- * A stored value belongs to its cell's lower corner (the convention of the metrics).
+ * A stored value stands for its cell's centre (merl/lattice.h).
  */
 #ifndef BENCH_ANGLES_H
 #define BENCH_ANGLES_H
@@ -12,25 +12,25 @@
 
 /* What the analytic models look at. */
 struct cell_angles {
-	double cos_i, cos_o; /* of incoming and outgoing direction; may be <= 0 in a lattice's corner */
+	double cos_i, cos_o; /* of incoming and outgoing direction; may be <= 0 where theta_h and theta_d are large */
 	double cos_h;        /* of theta_h */
 	double cos_d;        /* of theta_d = the angle between either direction and the half vector */
 };
 
-/* cos and sin of every corner along each axis; freed with corner_tables_free. */
-struct corner_tables {
+/* cos and sin of every centre along each axis; freed with centre_tables_free. */
+struct centre_tables {
 	struct lattice_dims dims;
 	double *cos_h, *sin_h, *cos_d, *sin_d, *cos_p;
 };
 
-bp_status corner_tables_alloc(struct lattice_dims dims, struct corner_tables *out, bp_error *error);
-void corner_tables_free(struct corner_tables *tables);
+bp_status centre_tables_alloc(struct lattice_dims dims, struct centre_tables *out, bp_error *error);
+void centre_tables_free(struct centre_tables *tables);
 
 /*
  * Rusinkiewicz (1998), with phi_h = 0: the half vector is (sin_h, 0, cos_h), wi is (theta_d, phi_d)
  * about it and wo its mirror image, so cos_i, cos_o = cos_h cos_d -+ sin_h sin_d cos_p.
  */
-static inline struct cell_angles cell_angles_at(const struct corner_tables *t, uint32_t i, uint32_t j, uint32_t k)
+static inline struct cell_angles cell_angles_at(const struct centre_tables *t, uint32_t i, uint32_t j, uint32_t k)
 {
 	double a = t->cos_h[i] * t->cos_d[j], b = t->sin_h[i] * t->sin_d[j] * t->cos_p[k];
 
@@ -51,5 +51,15 @@ static inline struct cell_angles cell_angles_of(const double wi[3], const double
  * in cells; truncating each gives the cell of the database's own sample code.
  */
 void lattice_coordinates(struct lattice_dims dims, const double wi[3], const double wo[3], double out[3]);
+
+/* Such a coordinate -> the cell whose centre is before it and the fraction of the way to the next; 0 before the first and beyond the last. */
+static inline uint32_t centre_before(double at, uint32_t extent, double *fraction)
+{
+	double from = fmin(fmax(at - 0.5, 0), extent - 1);
+	uint32_t cell = (uint32_t)from;
+
+	*fraction = from - cell;
+	return cell;
+}
 
 #endif

@@ -150,7 +150,7 @@ static bp_status archimedean_expand(const void *opaque, struct expansion *out, b
 	return status;
 }
 
-/* Marginals and the middles of their cells are interpolated linearly, phi_d up to its last corner. */
+/* Marginals and the middles of their cells are interpolated linearly between centres, which phi_d too begins and ends with. */
 static void archimedean_evaluate(const void *opaque, const double wi[3], const double wo[3], double rgb[3])
 {
 	const struct archimedean_state *state = opaque;
@@ -161,8 +161,10 @@ static void archimedean_evaluate(const void *opaque, const double wi[3], const d
 		const struct archimedean_channel *channel = &state->channel[c];
 		double f = (double)channel->scale, u[3];
 		for (int axis = 0; axis < 3; axis++) {
-			uint32_t n = (uint32_t)at[axis], next = n + 1 < archimedean_extent(state->dims, axis) ? n + 1 : n;
-			double x = at[axis] - n, f0 = (double)channel->marginal[axis][n], f1 = (double)channel->marginal[axis][next];
+			const uint32_t extent = archimedean_extent(state->dims, axis);
+			double x;
+			uint32_t n = centre_before(at[axis], extent, &x), next = n + 1 < extent ? n + 1 : n;
+			double f0 = (double)channel->marginal[axis][n], f1 = (double)channel->marginal[axis][next];
 			const double *edge = channel->edge[axis];
 			double low = (edge[n] + edge[n + 1]) / 2, high = (edge[next] + edge[next + 1]) / 2;
 			f *= f0 + x * (f1 - f0);

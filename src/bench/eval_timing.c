@@ -107,7 +107,10 @@ bp_material *eval_load(const bp_archive *archive, uint64_t index, bp_form form, 
 
 static void loads_time(const bp_archive *archive, uint64_t index, const bp_material_info *info, struct series *all)
 {
-	const double first = info->layers[0].log_rmse;
+	bp_layer preview;
+	if (bp_archive_layers(archive, index, sizeof preview, &preview, 1, NULL, NULL))
+		return;
+	const double first = preview.log_rmse;
 	double seconds;
 	bp_material *material = eval_load(archive, index, BP_FORM_EXPANDED, 0, 0, &seconds);
 	bp_material_free(material);

@@ -210,8 +210,8 @@ bp_status lobe_expand(const void *opaque, struct expansion *out, bp_error *error
 {
 	const struct lobe_state *state = opaque;
 	const struct lattice_dims dims = out->dims;
-	struct corner_tables tables;
-	bp_status status = corner_tables_alloc(dims, &tables, error);
+	struct centre_tables tables;
+	bp_status status = centre_tables_alloc(dims, &tables, error);
 
 	if (status)
 		return status;
@@ -224,7 +224,7 @@ bp_status lobe_expand(const void *opaque, struct expansion *out, bp_error *error
 				for (int c = 0; c < 3; c++)
 					out->rgb[c][cell] = (float)(state->diffuse[c] / M_PI + state->specular[c] * lobe);
 			}
-	corner_tables_free(&tables);
+	centre_tables_free(&tables);
 	return BP_OK;
 }
 

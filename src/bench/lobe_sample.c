@@ -7,18 +7,18 @@
 /* cos 80 degrees: Ngan et al. leave out what lies beyond, where measurements are unreliable. */
 static const double COSINE_LIMIT = 0.17364817766693036;
 
-/* The measure along theta_h of corner i: the integral of sin over [(i - 1/2)^2, (i + 1/2)^2] / H^2 pi/2. */
+/* The measure along theta_h of cell i: the integral of sin over [i^2, (i + 1)^2] / H^2 pi/2. */
 static double measure_h(uint32_t i, uint32_t extent)
 {
-	double low = i > 0 ? (i - 0.5) / extent : 0, high = (i + 0.5) / extent;
+	double low = (double)i / extent, high = (i + 1.0) / extent;
 
-	return cos(low * low * M_PI_2) - cos(fmin(1, high * high) * M_PI_2);
+	return cos(low * low * M_PI_2) - cos(high * high * M_PI_2);
 }
 
 /* ... of 4 cos sin along theta_d. */
 static double measure_d(uint32_t j, uint32_t extent)
 {
-	double low = j > 0 ? sin((j - 0.5) / extent * M_PI_2) : 0, high = sin(fmin(1, (j + 0.5) / extent) * M_PI_2);
+	double low = sin((double)j / extent * M_PI_2), high = sin((j + 1.0) / extent * M_PI_2);
 
 	return 2 * (high * high - low * low);
 }
@@ -29,10 +29,10 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 	const struct lattice_dims dims = lattice->dims;
 	size_t most = (size_t)dims.theta_h * ((dims.theta_d + stride_d - 1) / stride_d) * ((dims.phi_d + stride_p - 1) / stride_p);
 	size_t bytes = most * (sizeof(struct cell_angles) + 4 * sizeof(double) + sizeof(uint32_t));
-	struct corner_tables tables;
+	struct centre_tables tables;
 	struct lobe_sample sample = {.unit = 0};
 	double weight_sum = 0;
-	bp_status status = corner_tables_alloc(dims, &tables, error);
+	bp_status status = centre_tables_alloc(dims, &tables, error);
 
 	if (status)
 		return status;
@@ -79,7 +79,7 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 	sample.angles = NULL;
 out:
 	free(sample.angles);
-	corner_tables_free(&tables);
+	centre_tables_free(&tables);
 	return status;
 }
 

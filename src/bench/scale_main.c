@@ -16,7 +16,7 @@
 static bp_status record_make(uint8_t **record, size_t *bytes, bp_error *error)
 {
 	static const struct record_source source = {.bytes = 1};
-	const struct fit_options options = {PROFILE_SPECTRAL, 1000, 0, 5};
+	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = 1000, .effort = 5};
 	struct lattice lattice;
 	bp_status status = lattice_alloc((struct lattice_dims){4, 4, 4}, &lattice, error);
 

@@ -237,21 +237,22 @@ static bp_status tucker_expand(const void *opaque, struct expansion *out, bp_err
 	return BP_OK;
 }
 
-/* The factors are interpolated linearly, phi_d periodically. */
+/* The factors are interpolated linearly between centres, phi_d periodically. */
 static void tucker_evaluate(const void *opaque, const double wi[3], const double wo[3], double rgb[3])
 {
 	enum { LANES = 4 };
 	const struct tucker_state *s = opaque;
 	const uint32_t H = s->dims.theta_h, D = s->dims.theta_d, P = s->dims.phi_d;
 	const size_t T = s->stride;
-	double at[3];
+	double at[3], x_h, x_d;
 	float lane[3][LANES] = {{0}};
 
 	lattice_coordinates(s->dims, wi, wo, at);
-	uint32_t i = (uint32_t)at[0], j = (uint32_t)at[1], k = (uint32_t)at[2];
+	const double along = at[2] < 0.5 ? at[2] + P - 0.5 : at[2] - 0.5;
+	const uint32_t i = centre_before(at[0], H, &x_h), j = centre_before(at[1], D, &x_d), k = along < P ? (uint32_t)along : P - 1;
 	const float *u0 = s->u + i * T, *u1 = i + 1 < H ? u0 + T : u0, *v0 = s->v + j * T, *v1 = j + 1 < D ? v0 + T : v0;
 	const float *w0 = s->w + k * T, *w1 = k + 1 < P ? w0 + T : s->w;
-	float a = (float)(at[0] - i), b = (float)(at[1] - j), e = (float)(at[2] - k);
+	float a = (float)x_h, b = (float)x_d, e = (float)(along - k);
 	for (size_t t = 0; t < s->terms; t++) {
 		float x = (u0[t] + a * (u1[t] - u0[t])) * (v0[t] + b * (v1[t] - v0[t])) * (w0[t] + e * (w1[t] - w0[t]));
 		for (size_t c = 0; c < 3; c++)

@@ -28,16 +28,8 @@ struct section_kind {
 struct profile_codec {
 	enum profile profile;
 	uint32_t version; /* goes into the record's head; changes when the same input and options would give other bytes */
-	bool meets_max_error; /* encode looks after options->max_error itself; otherwise record_pack tries budgets */
 	const struct section_kind *kinds;
 	uint32_t kind_count;
-	/*
-	 * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least
-	 * possible, when head and sections cannot be as small as request->record_bytes_max. An encoder that knows what
-	 * decoding would give may store it in *decoded (NULL before), which saves measuring it the time; the caller frees it.
-	 */
-	bp_status (*encode)(const struct model *model, const struct encode_request *request, struct section_list *sections,
-	                    uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error);
 	/*
 	 * Builds the profile's part of *model from the sections of the layers that are wanted, in file order; on failure
 	 * record_decode frees what has been attached with model_free. Offsets in errors count from the section's start
@@ -47,12 +39,28 @@ struct profile_codec {
 	                    struct model *model, uint32_t *failed, bp_error *error);
 };
 
+/* Apart from the above, so that a program that only reads links no encoder. */
+struct profile_encoder {
+	enum profile profile;
+	bool meets_max_error; /* encode looks after options->max_error itself; otherwise record_pack tries budgets */
+	/*
+	 * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least
+	 * possible, when head and sections cannot be as small as request->record_bytes_max. An encoder that knows what
+	 * decoding would give may store it in *decoded (NULL before), which saves measuring it the time; the caller frees it.
+	 */
+	bp_status (*encode)(const struct model *model, const struct encode_request *request, struct section_list *sections,
+	                    uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error);
+};
+
 /* NULL for a profile that this program does not know. */
 const struct profile_codec *profile_codec_find(enum profile profile);
+const struct profile_encoder *profile_codec_find_encoder(enum profile profile);
 
 /* paper_sections.c */
 extern const struct profile_codec PAPER_CODEC;
+extern const struct profile_encoder PAPER_ENCODER;
 /* spectral_sections.c */
 extern const struct profile_codec SPECTRAL_CODEC;
+extern const struct profile_encoder SPECTRAL_ENCODER;
 
 #endif

@@ -6,6 +6,29 @@
 #include "error.h"
 #include "profile_codec.h"
 
+uint32_t record_layers_for(const struct record_head *head, double max_log_rmse)
+{
+	for (uint32_t n = 0; max_log_rmse > 0 && n < head->layer_count; n++)
+		if (head->layers[n].fidelity.log_rmse <= max_log_rmse)
+			return n + 1;
+	return head->layer_count;
+}
+
+bp_status record_verify(const uint8_t *record, size_t count, struct record_head *head, bp_error *error)
+{
+	bp_status status = record_head_parse(record, count, head, error);
+	if (status)
+		return status;
+	if (head->record_bytes != count)
+		return error_set(error, BP_ERROR_CORRUPT, 12, "the record has %u bytes, %zu were given", head->record_bytes, count);
+	for (uint32_t i = 0; i < head->section_count; i++) {
+		const struct record_section *entry = &head->sections[i];
+		if (bytes_crc32(record + entry->offset, entry->bytes) != entry->crc32)
+			return error_set(error, BP_ERROR_CHECKSUM, entry->offset, "the checksum of section %u differs", i);
+	}
+	return BP_OK;
+}
+
 static bool kind_known(const struct profile_codec *codec, const struct record_section *entry)
 {
 	for (uint32_t i = 0; i < codec->kind_count; i++)

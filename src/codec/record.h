@@ -109,6 +109,12 @@ bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_he
 /* Delivers `count` bytes at `offset` from the record's start; offsets in its errors are the caller's to understand. */
 typedef bp_status record_fetch_fn(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error);
 
+/* The fewest layers whose log RMSE is at most this; all where none satisfies it or 0 is asked for. */
+uint32_t record_layers_for(const struct record_head *head, double max_log_rmse);
+
+/* Checks the head and every section's checksum of a record that is in memory, `count` bytes. */
+bp_status record_verify(const uint8_t *record, size_t count, struct record_head *head, bp_error *error);
+
 /* Fetches and checks the sections of layers 0..layers-1 (0: all) and builds the model; the caller frees it with model_free. */
 bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user,
                         struct model **out, bp_error *error);

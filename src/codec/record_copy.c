@@ -11,18 +11,14 @@ static bp_status record_copy(const uint8_t *record, size_t count, uint32_t layer
 {
 	struct section_list kept = {0};
 	struct record_head head;
-	bp_status status = record_head_parse(record, count, &head, error);
+	const bp_status status = record_verify(record, count, &head, error);
 	if (status)
 		return status;
-	if (head.record_bytes != count)
-		return error_set(error, BP_ERROR_CORRUPT, 12, "the record has %u bytes, %zu were given", head.record_bytes, count);
 	if (layers == 0 || layers > head.layer_count)
 		layers = head.layer_count;
-	for (uint32_t i = 0; i < head.section_count && !status; i++) {
+	for (uint32_t i = 0; i < head.section_count; i++) {
 		const struct record_section *entry = &head.sections[i];
-		if (bytes_crc32(record + entry->offset, entry->bytes) != entry->crc32)
-			status = error_set(error, BP_ERROR_CHECKSUM, entry->offset, "the checksum of section %u differs", i);
-		else if (entry->layer < layers)
+		if (entry->layer < layers)
 			write_bytes(section_add(&kept, (enum section_type)entry->type, entry->codec, entry->version, entry->layer, entry->flags, entry->error),
 			            record + entry->offset, entry->bytes);
 	}
@@ -33,10 +29,9 @@ static bp_status record_copy(const uint8_t *record, size_t count, uint32_t layer
 		memset(head.name, 0, sizeof head.name);
 		memcpy(head.name, name, strlen(name));
 	}
-	if (!status)
-		status = record_write(&head, &kept, out, out_bytes, error);
+	const bp_status written = record_write(&head, &kept, out, out_bytes, error);
 	section_list_free(&kept);
-	return status;
+	return written;
 }
 
 bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layers, uint8_t **out, size_t *out_bytes, bp_error *error)

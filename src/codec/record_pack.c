@@ -22,13 +22,14 @@ static void head_fill(struct record_head *head, const struct model *model, const
 	head->horizon_limit = model->horizon_limit;
 	memcpy(head->colour, model->colour, sizeof head->colour);
 	head->options = *options;
+	head->options.watch = NULL;
 	head->source = *source;
 }
 
 /* What stays the same while records of several sizes are tried. */
 struct packing {
 	const struct lattice *lattice;
-	const struct profile_codec *codec;
+	const struct profile_encoder *encoder;
 	const struct model *model;
 	struct encode_request request;
 	struct record_head head; /* the constant parts filled */
@@ -51,8 +52,14 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 
 	request.record_bytes_max = record_bytes_max;
 	stage_enter(STAGE_CODE);
-	status = packing->codec->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, &decoded,
+	status = watch_tell(request.options->watch, 0.6, error);
+	if (status)
+		goto out;
+	status = packing->encoder->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, &decoded,
 	                                error);
+	if (status)
+		goto out;
+	status = watch_tell(request.options->watch, 0.8, error);
 	if (status)
 		goto out;
 	status = record_measure(&packed.head, &sections, packing->lattice, decoded, &packed.record, &packed.bytes, error);
@@ -150,14 +157,14 @@ bp_status record_pack(const struct lattice *lattice, const char *name, const str
                       const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
                       bp_error *error)
 {
-	struct packing packing = { .lattice = lattice, .codec = profile_codec_find(options->profile) };
+	struct packing packing = { .lattice = lattice, .encoder = profile_codec_find_encoder(options->profile) };
 	struct packed packed = { .record = NULL };
 	struct model *model = NULL;
 	size_t name_bytes = strlen(name);
 	const char *fault = name_fault(name, name_bytes);
 	bp_status status;
 
-	if (!packing.codec)
+	if (!packing.encoder)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
 	if (fault)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);
@@ -166,8 +173,8 @@ bp_status record_pack(const struct lattice *lattice, const char *name, const str
 		return status;
 	packing.model = model;
 	packing.request = (struct encode_request){ .options = options, .name_bytes = name_bytes };
-	head_fill(&packing.head, model, name, source, options, packing.codec->version);
-	if (options->max_error > 0 && !packing.codec->meets_max_error)
+	head_fill(&packing.head, model, name, source, options, profile_codec_find(options->profile)->version);
+	if (options->max_error > 0 && !packing.encoder->meets_max_error)
 		status = record_search(&packing, options->max_error, &packed, error);
 	else
 		status = record_build(&packing, options->max_error > 0 ? RECORD_BUDGET_MAX : options->budget_bytes, &packed, error);

@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "watch.h"
+
 enum profile { PROFILE_PAPER = 1, PROFILE_SPECTRAL = 2 };
 enum { LAYERS_MAX = 16 };
 
@@ -12,6 +14,7 @@ struct fit_options {
 	uint32_t budget_bytes; /* largest record, everything included; 60,400 unless told */
 	double max_error;      /* > 0: instead, the smallest record whose log RMSE is at most this */
 	int effort;            /* 1..9, 5 unless told */
+	const struct watch *watch; /* NULL: nobody; not a part of what a record says */
 };
 
 #endif

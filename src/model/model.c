@@ -27,7 +27,7 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 	switch (options->profile) {
 	case PROFILE_PAPER:
 		model->layer_count = PAPER_LAYERS;
-		status = paper_fit(lattice, &model->paper, model->colour, error);
+		status = paper_fit(lattice, options->watch, &model->paper, model->colour, error);
 		break;
 	case PROFILE_SPECTRAL:
 		model->layer_count = 1; /* the encoder cuts layers */

@@ -365,5 +365,7 @@ static bp_status paper_decode(const struct record_head *head, const struct secti
 
 const struct profile_codec PAPER_CODEC = {
 	.profile = PROFILE_PAPER, .version = 3, .kinds = KINDS, .kind_count = sizeof KINDS / sizeof *KINDS,
-	.encode = paper_encode, .decode = paper_decode,
+	.decode = paper_decode,
 };
+
+const struct profile_encoder PAPER_ENCODER = { .profile = PROFILE_PAPER, .encode = paper_encode };

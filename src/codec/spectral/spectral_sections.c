@@ -203,6 +203,7 @@ const struct profile_codec SPECTRAL_CODEC = {
 	.version = 3,
 	.kinds = KINDS,
 	.kind_count = sizeof KINDS / sizeof *KINDS,
-	.encode = spectral_encode,
 	.decode = spectral_decode,
 };
+
+const struct profile_encoder SPECTRAL_ENCODER = { .profile = PROFILE_SPECTRAL, .encode = spectral_encode };

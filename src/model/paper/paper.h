@@ -42,7 +42,8 @@ struct paper_model {
 };
 
 /* *out, which paper_free frees, and the regression of each channel on it. Nothing is kept on failure. */
-bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, struct colour_fit colour[3], bp_error *error);
+bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out, struct colour_fit colour[3],
+                    bp_error *error);
 void paper_free(struct paper_model *paper); /* NULL is allowed */
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h over the whole lattice: the model in units of scale; >= 0 and finite. */
 bp_status paper_achromatic(const struct paper_model *paper, uint32_t layers, float *table, bp_error *error);

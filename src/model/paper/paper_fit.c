@@ -98,7 +98,7 @@ static bp_status slices_fit(const struct density *density, struct paper_model *p
 	return status;
 }
 
-bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
+bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
 {
 	const struct lattice_dims d = lattice->dims;
 	const size_t largest_field = (size_t)(d.theta_h > d.theta_d ? d.theta_h : d.theta_d) * (d.theta_d > d.phi_d ? d.theta_d : d.phi_d);
@@ -124,7 +124,8 @@ bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, str
 		goto out;
 	}
 	stage_enter(STAGE_TRANSFORM);
-	status = marginal_fit(&density.axis[0], d.theta_h, false, &paper->marginal[0], &means[0], error);
+	status = watch_tell(watch, 0.1, error);
+	status = status ? status : marginal_fit(&density.axis[0], d.theta_h, false, &paper->marginal[0], &means[0], error);
 	status = status ? status : marginal_fit(&density.axis[1], d.theta_d, false, &paper->marginal[1], &means[1], error);
 	status = status ? status : marginal_fit(&density.axis[2], d.phi_d, true, &paper->marginal[2], &means[2], error);
 	if (status)
@@ -132,7 +133,9 @@ bp_status paper_fit(const struct lattice *lattice, struct paper_model **out, str
 	/* The copulas are ratios of means, the marginals have mean 1: their means go into the scale. */
 	paper->scale = density.mean * means[0] * means[1] * means[2];
 	status = pairs_fit(&density, paper, value, defined, error);
+	status = status ? status : watch_tell(watch, 0.3, error);
 	status = status ? status : slices_fit(&density, paper, value, defined, error);
+	status = status ? status : watch_tell(watch, 0.5, error);
 	if (status)
 		goto out;
 	density_free(&density);

@@ -1,9 +1,11 @@
 #include "albedo.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
+#include "environment.h"
 #include "error.h"
+#include "memory.h"
 #include "model/math/fast_math.h"
 #include "horizon_s.h"
 
@@ -74,7 +76,10 @@ static void angle_get(struct albedo_cache *cache, const struct table *table, int
 		for (int c = 0; c < 3; c++)
 			value[c] = float_of_bits(__atomic_load_n(&cache->bits[n][c], __ATOMIC_RELAXED));
 	} else {
+		fenv_t before; /* what is kept is everyone's */
+		environment_enter(&before);
 		albedo_integrate(table, angle_theta(n), value);
+		environment_leave(&before);
 		for (int c = 0; c < 3; c++)
 			__atomic_store_n(&cache->bits[n][c], bits_of_float(value[c]), __ATOMIC_RELAXED);
 		__atomic_store_n(&cache->known[n], 1, __ATOMIC_RELEASE);
@@ -85,16 +90,17 @@ static void angle_get(struct albedo_cache *cache, const struct table *table, int
 
 bp_status albedo_cache_make(struct albedo_cache **out, bp_error *error)
 {
-	struct albedo_cache *cache = calloc(1, sizeof *cache);
+	struct albedo_cache *cache = memory_alloc_kept(sizeof *cache);
 	if (!cache)
 		return error_memory(error, sizeof *cache);
+	memset(cache, 0, sizeof *cache);
 	*out = cache;
 	return BP_OK;
 }
 
 void albedo_cache_free(struct albedo_cache *cache)
 {
-	free(cache);
+	memory_free_kept(cache);
 }
 
 size_t albedo_cache_bytes(void)

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
 #include "sampler.h"
 
 enum { SUB_PHI = 2, SUB_S = 3, SUBS = BINS * SUB_S };
@@ -112,10 +113,10 @@ static void guesses_make(struct sampler *p)
 
 bp_status sampler_build(const struct table *table, struct sampler **out, bp_error *error)
 {
-	struct sampler *p = malloc(sizeof *p);
+	struct sampler *p = memory_alloc_kept(sizeof *p);
 	struct scratch *scratch = malloc(sizeof *scratch);
 	if (!p || !scratch) {
-		free(p);
+		memory_free_kept(p);
 		free(scratch);
 		return error_memory(error, sizeof *p + sizeof *scratch);
 	}
@@ -144,7 +145,7 @@ bp_status sampler_build(const struct table *table, struct sampler **out, bp_erro
 
 void sampler_free(struct sampler *sampler)
 {
-	free(sampler);
+	memory_free_kept(sampler);
 }
 
 size_t sampler_bytes(const struct sampler *sampler)

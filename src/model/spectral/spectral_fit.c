@@ -117,8 +117,8 @@ static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const
 }
 
 /* Spectra of channels become those of fields. */
-static bp_status fields_make(struct lattice_dims d, const int order[3], const float rotation[3][3], bool denoise, struct spectral_model *fitted,
-                             bp_error *error)
+static bp_status fields_make(struct lattice_dims d, const int order[3], const float rotation[3][3], bool denoise, const struct watch *watch,
+                             struct spectral_model *fitted, bp_error *error)
 {
 	const size_t rows = (size_t)d.theta_h * d.theta_d;
 	bp_status status = BP_OK;
@@ -131,8 +131,10 @@ static bp_status fields_make(struct lattice_dims d, const int order[3], const fl
 		for (int k = 0; k < 3; k++)
 			fitted->rotation[f][order[k]] = rotation[f][k];
 	stage_enter(STAGE_CLEAN);
-	for (int f = 0; !status && f < 3 && denoise; f++)
-		status = spectral_denoise(d, fitted->coefficient[f], &fitted->noisy, error);
+	for (int f = 0; !status && f < 3 && denoise; f++) {
+		status = watch_tell(watch, 0.4 + 0.05 * f, error);
+		status = status ? status : spectral_denoise(d, fitted->coefficient[f], &fitted->noisy, error);
+	}
 	return status;
 }
 
@@ -149,12 +151,15 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 
 	memcpy(fitted->coefficient[0], filled, 3 * lattice_cells(lattice->dims) * sizeof *filled);
 	stage_enter(STAGE_CLEAN);
+	status = watch_tell(options->watch, 0.5, error);
+	if (status)
+		return status;
 	status = spectral_project(spectrum, lattice->dims, lattice->valid, base, options->budget_bytes, PROJECTIONS[options->effort],
 	                         fitted->coefficient, error);
 	if (status)
 		return status;
 	spectra_make(lattice->dims, spectrum, order, fitted, rotation);
-	return fields_make(lattice->dims, order, (const float(*)[3])rotation, true, fitted, error);
+	return fields_make(lattice->dims, order, (const float(*)[3])rotation, true, options->watch, fitted, error);
 }
 
 bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out, struct colour_fit colour[3],
@@ -194,6 +199,8 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	}
 	spectral_survey_free(&sample);
 	if (!status)
+		status = watch_tell(options->watch, 0.1, error);
+	if (!status)
 		status = logs_make(lattice, order, fitted, error);
 	if (!status && project) {
 		filled = malloc(3 * cells * sizeof *filled);
@@ -203,9 +210,11 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 			status = error_memory(error, 3 * cells * sizeof *filled);
 	}
 	if (!status)
+		status = watch_tell(options->watch, 0.2, error);
+	if (!status)
 		spectra_make(d, spectrum, order, fitted, rotation);
 	if (!status)
-		status = fields_make(d, order, (const float(*)[3])rotation, denoise, fitted, error);
+		status = fields_make(d, order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
 	if (!status && project && !fitted->noisy && lattice->valid_count < cells)
 		status = fields_improve(lattice, options, spectrum, order, filled, fitted, error);
 	free(filled);

@@ -276,9 +276,9 @@ static inline void KERNEL(compact_rgb_values)(const struct table *t, const struc
 }
 
 static const struct KERNEL(form) KERNEL(compact_rgb_form) = {
-	KERNEL(cell_h_last), KERNEL(compact_rgb_one), KERNEL(compact_find_many), NULL, KERNEL(compact_rgb_values), 1, true};
+	KERNEL(compact_rgb_one), KERNEL(compact_find_many), NULL, KERNEL(compact_rgb_values), 1, true};
 static const struct KERNEL(form) KERNEL(compact_mono_form) = {
-	KERNEL(cell_h_last), KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_of_many), NULL, 1, true};
+	KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_of_many), NULL, 1, true};
 FORM_ENTRIES(compact_rgb_form)
 FORM_ENTRIES(compact_mono_form)
 

@@ -100,9 +100,9 @@ static inline void KERNEL(expanded_mono_one)(const struct table *t, const struct
 }
 
 static const struct KERNEL(form) KERNEL(expanded_rgb_form) = {
-	KERNEL(cell), KERNEL(expanded_rgb_one), KERNEL(expanded_find), KERNEL(expanded_rgb), NULL, sizeof(uint16_t), false};
+	KERNEL(expanded_rgb_one), KERNEL(expanded_find), KERNEL(expanded_rgb), NULL, sizeof(uint16_t), false};
 static const struct KERNEL(form) KERNEL(expanded_mono_form) = {
-	KERNEL(cell), KERNEL(expanded_mono_one), KERNEL(expanded_find), KERNEL(expanded_mono), NULL, sizeof(uint16_t), false};
+	KERNEL(expanded_mono_one), KERNEL(expanded_find), KERNEL(expanded_mono), NULL, sizeof(uint16_t), false};
 FORM_ENTRIES(expanded_rgb_form)
 FORM_ENTRIES(expanded_mono_form)
 

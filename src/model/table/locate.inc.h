@@ -18,7 +18,7 @@ struct lookup {
 /* The cell of the first neighbours, which may be the others too (table_parts.h), and the fractions of the way to those. */
 struct cell {
 	uint32_t i, j, k;
-	uint32_t has_h, has_d; /* all bits, or none: they are the same */
+	uint32_t has_h, has_d; /* all bits, or none: the other neighbour is the first */
 	float h, d, p;
 };
 
@@ -28,18 +28,11 @@ struct cell_x4 {
 	f32x4 h, beyond;
 };
 
-/* From what direction_locate_squared gives: no number is out of range, since that is within the lattice. */
+/*
+ * From what direction_locate_squared gives: no number is out of range, since that is within the lattice. By more operations than
+ * h in the same vector would take, but j and k, by which more is looked up, are there before the root is.
+ */
 static inline struct cell_x4 KERNEL(cell)(const struct table *t, f32x4 squared, f32x4 at)
-{
-	at[0] = sqrtf(squared[0]);
-	at += t->shift;
-	const i32x4 cell = __builtin_convertvector(at, i32x4);
-	at -= __builtin_convertvector(cell, f32x4);
-	return (struct cell_x4){(uint32_t)cell[0], (uint32_t)cell[1], (uint32_t)cell[2], at, at};
-}
-
-/* The same by more operations, but j and k are there before the root is: for who looks up more by them. */
-static inline struct cell_x4 KERNEL(cell_h_last)(const struct table *t, f32x4 squared, f32x4 at)
 {
 	const f32x4 root = sqrt_x4(squared) + t->shift;
 	at += t->shift;
@@ -57,9 +50,9 @@ static inline struct cell_x4 KERNEL(cell_h_last)(const struct table *t, f32x4 sq
 static inline struct cell_x4 KERNEL(cell_nearest)(const struct table *t, f32x4 squared, f32x4 at)
 {
 	const f32x4 none = {0, 0, 0, 0};
-	at[0] = sqrtf(squared[0]);
 	const i32x4 cell = __builtin_convertvector(min_x4(at, t->last), i32x4) + 1;
-	return (struct cell_x4){(uint32_t)cell[0], (uint32_t)cell[1], (uint32_t)cell[2], none, none};
+	const i32x4 h = __builtin_convertvector(min_x4(sqrt_x4(squared), t->last), i32x4) + 1;
+	return (struct cell_x4){(uint32_t)h[0], (uint32_t)cell[1], (uint32_t)cell[2], none, none};
 }
 
 /* Pairs that are located together: the loops vectorise over them, and their cells are on the way to the cache while others are evaluated. */
@@ -162,7 +155,6 @@ __attribute__((always_inline)) static inline void KERNEL(fetch)(const struct tab
 
 /* What one memory form and number of channels is made of. Constant where it is used, so that the calls below become direct and inline. */
 struct KERNEL(form) {
-	struct cell_x4 (*cell)(const struct table *t, f32x4 squared, f32x4 at);
 	void (*one)(const struct table *t, const struct cell_x4 *at, float rgb[3]);
 	struct lookup (*find)(const struct table *t, struct cell cell);                           /* for a loop that vectorises */
 	void (*value)(const struct table *t, const struct lookup *l, float rgb[3]);               /* of one of many, to the same bits as `one` */
@@ -179,7 +171,7 @@ FORM_FUNCTION void KERNEL(form_evaluate)(const struct KERNEL(form) form, bool ne
 {
 	f32x4 squared, at;
 	if (direction_locate_squared(t->scale, wi, wo, &squared, &at)) {
-		const struct cell_x4 cell = nearest ? KERNEL(cell_nearest)(t, squared, at) : form.cell(t, squared, at);
+		const struct cell_x4 cell = nearest ? KERNEL(cell_nearest)(t, squared, at) : KERNEL(cell)(t, squared, at);
 		form.one(t, &cell, rgb);
 	} else {
 		rgb[0] = rgb[1] = rgb[2] = 0;

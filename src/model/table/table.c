@@ -94,9 +94,10 @@ static bp_status expanded_fill(struct table *t, const struct expansion *e, float
 /* Without its store. */
 static bp_status table_new(struct lattice_dims dims, bool half, enum table_form form, int channels, struct table **out, bp_error *error)
 {
-	struct table *t = calloc(1, sizeof *t);
+	struct table *t = memory_alloc_kept(sizeof *t);
 	if (!t)
 		return error_memory(error, sizeof *t);
+	*t = (struct table){0};
 	t->form = form;
 	t->channels = channels;
 	t->dims = dims;
@@ -185,8 +186,8 @@ void table_free(struct table *table)
 {
 	if (!table)
 		return;
-	free(table->store);
-	free(table);
+	memory_free_kept(table->store);
+	memory_free_kept(table);
 }
 
 size_t table_bytes(const struct table *table)

@@ -1,0 +1,129 @@
+/* The public writer: gathers records in any order, then gives them to archive_writer in that of their names. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "codec/record.h"
+#include "error.h"
+#include "writer.h"
+
+struct gathered {
+	char *name; /* in the same block, behind the record */
+	uint8_t *record;
+	size_t bytes;
+};
+
+struct bp_writer {
+	struct gathered *list; /* in the order of the names */
+	size_t count, capacity;
+};
+
+bp_status bp_writer_create(bp_writer **out, bp_error *error)
+{
+	if (!out)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a place for the writer is needed");
+	bp_writer *writer = calloc(1, sizeof *writer);
+	if (!writer)
+		return error_memory(error, sizeof *writer);
+	*out = writer;
+	return BP_OK;
+}
+
+void bp_writer_free(bp_writer *writer)
+{
+	if (!writer)
+		return;
+	for (size_t n = 0; n < writer->count; n++)
+		free(writer->list[n].record);
+	free(writer->list);
+	free(writer);
+}
+
+/* The first that is not before the name: strcmp goes by the bytes as unsigned, which is the archive's order. */
+static size_t place_find(const bp_writer *writer, const char *name)
+{
+	size_t low = 0, high = writer->count;
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (strcmp(writer->list[middle].name, name) < 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+static bp_status room_make(bp_writer *writer, bp_error *error)
+{
+	if (writer->count < writer->capacity)
+		return BP_OK;
+	const size_t capacity = writer->capacity ? 2 * writer->capacity : 16;
+	struct gathered *list = realloc(writer->list, capacity * sizeof *list);
+	if (!list)
+		return error_memory(error, capacity * sizeof *list);
+	writer->list = list;
+	writer->capacity = capacity;
+	return BP_OK;
+}
+
+bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
+{
+	struct record_head head;
+	if (!record)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no record");
+	bp_status status = record_verify(record, record_bytes, &head, error);
+	if (status)
+		return status;
+	const size_t place = place_find(writer, head.name), name_bytes = strlen(head.name) + 1;
+	if (place < writer->count && !strcmp(writer->list[place].name, head.name))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is a material \"%s\" already", head.name);
+	status = room_make(writer, error);
+	if (status)
+		return status;
+	uint8_t *copy = malloc(record_bytes + name_bytes);
+	if (!copy)
+		return error_memory(error, record_bytes + name_bytes);
+	memcpy(copy, record, record_bytes);
+	memcpy(copy + record_bytes, head.name, name_bytes);
+	memmove(writer->list + place + 1, writer->list + place, (writer->count - place) * sizeof *writer->list);
+	writer->list[place] = (struct gathered){.name = (char *)copy + record_bytes, .record = copy, .bytes = record_bytes};
+	writer->count++;
+	return BP_OK;
+}
+
+uint64_t bp_writer_count(const bp_writer *writer)
+{
+	return writer->count;
+}
+
+/* Adds all; the archive writer is gone after a failure. */
+static bp_status all_add(const bp_writer *writer, struct archive_writer *to, bp_error *error)
+{
+	for (size_t n = 0; n < writer->count; n++) {
+		const bp_status status = archive_writer_add(to, writer->list[n].record, writer->list[n].bytes, error);
+		if (status) {
+			archive_writer_discard(to);
+			return status;
+		}
+	}
+	return BP_OK;
+}
+
+bp_status bp_writer_save(const bp_writer *writer, const char *path, bp_error *error)
+{
+	struct archive_writer *to = NULL;
+	bp_status status = archive_writer_open(path, &to, error);
+	if (!status)
+		status = all_add(writer, to, error);
+	return status ? status : archive_writer_commit(to, error);
+}
+
+bp_status bp_writer_save_memory(const bp_writer *writer, uint8_t **bytes, size_t *count, bp_error *error)
+{
+	struct archive_writer *to = NULL;
+	if (!bytes || !count)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "places for the bytes and their number are needed");
+	bp_status status = archive_writer_open_memory(&to, error);
+	if (!status)
+		status = all_add(writer, to, error);
+	return status ? status : archive_writer_commit_memory(to, bytes, count, error);
+}

@@ -1,0 +1,130 @@
+/* Packing from memory: the caller's table -> lattice -> record. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "codec/record.h"
+#include "environment.h"
+#include "error.h"
+#include "stage.h"
+
+enum { CHANNELS = 3, BUDGET_USUAL = 60400, EFFORT_USUAL = 5, EFFORT_MOST = 9 };
+#define ERROR_LEAST 1e-6
+#define ERROR_MOST 10.0
+
+static bp_status options_read(const bp_pack_options *options, struct fit_options *fit, bp_error *error)
+{
+	static const bp_pack_options USUAL = {.struct_bytes = sizeof USUAL};
+	options = options ? options : &USUAL;
+	if (options->struct_bytes != sizeof *options)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_pack_options) = %zu", options->struct_bytes,
+		                 sizeof *options);
+	if (options->profile && options->profile != PROFILE_PAPER && options->profile != PROFILE_SPECTRAL)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no profile %u; 1 is paper, 2 spectral", options->profile);
+	if (options->budget_bytes && (options->budget_bytes < RECORD_BUDGET_MIN || options->budget_bytes > RECORD_BUDGET_MAX))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a budget of %u bytes: %d to %d are possible", options->budget_bytes,
+		                 RECORD_BUDGET_MIN, RECORD_BUDGET_MAX);
+	if (options->max_error != 0 && !(options->max_error >= ERROR_LEAST && options->max_error <= ERROR_MOST))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an error bound of %g: %g to %g are possible", options->max_error, ERROR_LEAST,
+		                 ERROR_MOST);
+	if (options->budget_bytes && options->max_error != 0)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a budget and an error bound exclude each other");
+	if (options->effort > EFFORT_MOST)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an effort of %u: 1 to %d are possible", options->effort, EFFORT_MOST);
+	*fit = (struct fit_options){
+		.profile = options->profile ? (enum profile)options->profile : PROFILE_SPECTRAL,
+		.budget_bytes = options->max_error > 0 ? RECORD_BUDGET_MAX : options->budget_bytes ? options->budget_bytes : BUDGET_USUAL,
+		.max_error = options->max_error,
+		.effort = options->effort ? (int)options->effort : EFFORT_USUAL,
+	};
+	return BP_OK;
+}
+
+static bp_status measured_check(const bp_measured *measured, bp_error *error)
+{
+	if (!measured || measured->struct_bytes != sizeof *measured)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_measured)");
+	if (!measured->values)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there are no values");
+	if (measured->number != BP_NUMBER_FLOAT && measured->number != BP_NUMBER_DOUBLE)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "measured values are float or double, not of kind %d", (int)measured->number);
+	if (measured->layout != BP_LAYOUT_PLANES && measured->layout != BP_LAYOUT_INTERLEAVED)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no layout %d", (int)measured->layout);
+	for (int c = 0; c < CHANNELS; c++)
+		if (!(measured->scale[c] >= 0 && measured->scale[c] <= 1e300))
+			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "channel %d has the scale %g", c, measured->scale[c]);
+	return BP_OK;
+}
+
+/* Channel c in 1/sr, and what the mask takes out as not measured. */
+static void plane_copy(const bp_measured *measured, size_t cells, int c, double scale, double *plane)
+{
+	const size_t step = measured->layout == BP_LAYOUT_INTERLEAVED ? CHANNELS : 1;
+	const size_t first = measured->layout == BP_LAYOUT_INTERLEAVED ? (size_t)c : (size_t)c * cells;
+	if (measured->number == BP_NUMBER_DOUBLE)
+		for (size_t n = 0; n < cells; n++)
+			plane[n] = ((const double *)measured->values)[first + n * step] * scale;
+	else
+		for (size_t n = 0; n < cells; n++)
+			plane[n] = (double)((const float *)measured->values)[first + n * step] * scale;
+	for (size_t n = 0; measured->mask && n < cells; n++)
+		if (!measured->mask[n])
+			plane[n] = -1;
+}
+
+static bp_status lattice_make(const bp_measured *measured, struct lattice *lattice, bp_error *error)
+{
+	const struct lattice_dims dims = {measured->theta_h, measured->theta_d, measured->phi_d};
+	const bool unscaled = measured->scale[0] == 0 && measured->scale[1] == 0 && measured->scale[2] == 0;
+	bp_status status = lattice_dims_check(dims, error);
+	if (!status)
+		status = lattice_alloc(dims, lattice, error);
+	if (status)
+		return status;
+	const size_t cells = lattice_cells(dims);
+	memset(lattice->valid, 0, cells);
+	for (int c = 0; c < CHANNELS; c++) {
+		plane_copy(measured, cells, c, unscaled ? 1 : measured->scale[c], lattice->rgb[c]);
+		lattice_scan(lattice->rgb[c], cells, 1, lattice->valid);
+	}
+	lattice_scan_finish(lattice);
+	return BP_OK;
+}
+
+bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_options *options, uint8_t **record, size_t *record_bytes,
+                  bp_error *error)
+{
+	struct fit_options fit;
+	struct lattice lattice = {0};
+	struct record_source source = {0};
+	fenv_t before;
+
+	if (!name || !record || !record_bytes)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a name, and places for the record and its size are needed");
+	bp_status status = measured_check(measured, error);
+	if (!status)
+		status = options_read(options, &fit, error);
+	if (status)
+		return status;
+	const struct watch watch = {options ? options->progress : NULL, options ? options->user : NULL};
+	fit.watch = watch.tell ? &watch : NULL;
+	environment_enter(&before);
+	status = watch_tell(fit.watch, 0, error);
+	if (!status)
+		status = lattice_make(measured, &lattice, error);
+	if (!status) {
+		source.bytes = measured->source_bytes;
+		source.nonfinite_count = lattice.nonfinite_count;
+		memcpy(source.sha256, measured->source_sha256, sizeof source.sha256);
+		status = record_pack(&lattice, name, &source, &fit, record, record_bytes, NULL, error);
+	}
+	lattice_free(&lattice);
+	environment_leave(&before);
+	return status;
+}
+
+bp_status bp_record_rename(const uint8_t *record, size_t record_bytes, const char *name, uint8_t **out, size_t *out_bytes, bp_error *error)
+{
+	if (!record || !name || !out || !out_bytes)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a record, a name, and places for the copy and its size are needed");
+	return record_rename(record, record_bytes, name, out, out_bytes, error);
+}

@@ -1,0 +1,72 @@
+/* What the reading half makes of an archive, as checksums: the same from every way to compile it. */
+#include <brdfpack.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static uint64_t sum; /* FNV-1a */
+
+static void sum_add(const void *bytes, size_t count)
+{
+	const unsigned char *byte = bytes;
+	for (size_t n = 0; n < count; n++)
+		sum = (sum ^ byte[n]) * 1099511628211u;
+}
+
+static int material_sum(const bp_archive *archive, uint64_t index, bp_error *error)
+{
+	bp_material_info info = {.struct_bytes = sizeof info};
+	bp_table_options tables = {.struct_bytes = sizeof tables, .number = BP_NUMBER_HALF, .layout = BP_LAYOUT_INTERLEAVED};
+	if (bp_archive_info(archive, index, &info, error))
+		return 1;
+	const size_t bytes = bp_table_bytes(info.theta_h, info.theta_d, info.phi_d, &tables);
+	void *table = malloc(bytes);
+	if (!table || bp_archive_table(archive, index, &tables, table, bytes, error)) {
+		free(table);
+		return 1;
+	}
+	sum_add(table, bytes);
+	free(table);
+	for (int form = 0; form < 3; form++) {
+		const bp_load_options options = {.struct_bytes = sizeof options, .form = (bp_form)form, .sampling = 1};
+		bp_material *material = NULL;
+		if (bp_material_load(archive, index, &options, &material, error))
+			return 1;
+		for (int n = 0; n < 500; n++) {
+			/* directions by arithmetic alone: another libm would give others */
+			const float x = (float)(n % 23) / 23, y = (float)(n % 19) / 19 - 0.5f, wo[3] = {x, y, 1.01f - x};
+			const float u[3] = {(float)(n % 17) / 17, (float)(n % 13) / 13, (float)(n % 11) / 11}, wi[3] = {y, x - 0.5f, 0.3f};
+			float rgb[3];
+			bp_material_evaluate(material, wi, wo, rgb);
+			sum_add(rgb, sizeof rgb);
+			const float pdf = bp_material_pdf(material, wi, wo);
+			if (!(pdf > 0 && isfinite(pdf) && bp_material_sample(material, wo, u, rgb) > 0)) {
+				snprintf(error->message, sizeof error->message, "a density that is none");
+				return 1;
+			}
+		}
+		bp_material_free(material);
+	}
+	return 0;
+}
+
+int main(int argc, char **argv)
+{
+	bp_archive *archive = NULL;
+	bp_error error;
+	if (argc != 2)
+		return 2;
+	sum = 14695981039346656037u;
+	int bad = bp_archive_open(argv[1], &archive, &error) != BP_OK;
+	bad = bad || bp_archive_verify(archive, BP_VERIFY_DEEP, NULL, NULL, &error) != BP_OK;
+	for (uint64_t i = 0; !bad && i < bp_archive_count(archive); i++)
+		bad = material_sum(archive, i, &error);
+	if (bad)
+		fprintf(stderr, "%s: %s\n", argv[1], error.message);
+	else
+		printf("%llu materials, %016llx\n", (unsigned long long)bp_archive_count(archive), (unsigned long long)sum);
+	bp_archive_close(archive);
+	return bad;
+}
