@@ -14,7 +14,7 @@ import sys
 RANK = {
     "": 0, "merl": 1, "model/math": 2, "model/robust": 3, "model/paper": 4, "model/spectral": 4, "model": 5, "model/table": 6, "model/sample": 7,
     "codec": 8, "codec/paper": 9, "codec/spectral": 9, "archive": 10, "render": 10, "tool": 12, "tool/build": 13, "tool/compare": 13, "tool/report_page": 13,
-    "tool/commands": 14, "bench": 15, "viewer/zlib": 15, "viewer": 16,
+    "tool/commands": 14, "bench": 15, "viewer": 16,
 }
 # The header by which neighbours enter a wing. What is not here is a set of tools, each header for itself.
 DOOR = {
