@@ -289,6 +289,7 @@ install: all $(BUILD)/brdfpack.pc
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	install -m 644 $(BUILD)/brdfpack.pc $(DESTDIR)$(LIBDIR)/pkgconfig/
+	[ ! -f $(BUILD)/viewer/viewer.html ] || { install -d $(DESTDIR)$(PREFIX)/share/brdfpack && install -m 644 $(BUILD)/viewer/viewer.html $(BUILD)/viewer/index.html $(DESTDIR)$(PREFIX)/share/brdfpack/; }
 	install -m 644 src/tool/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man1/
 	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
 

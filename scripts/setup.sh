@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, and nothing that is already there.
 #
-#     scripts/setup.sh [build|test|slow|slurm|bench]...      default: build
+#     scripts/setup.sh [build|test|slow|slurm|bench|viewer]...      default: build
 #
 #     build  what the tool and the library need
 #     test   what the unit tests (also those of the benchmark) and command-line tests need besides
 #     slow   what the clang, sanitizer and valgrind jobs need besides
 #     slurm  what the job on Slurm needs besides
 #     bench  what the benchmarks and their plots need besides
+#     viewer what the page's viewer is built with, and the browser that tests it
 #
 # Needs root or sudo only when something is missing; without either it names the packages and stops.
 set -euo pipefail
@@ -18,6 +19,7 @@ test="gcc-multilib libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-confi
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
+viewer="emscripten:emcc nodejs:node chromium:chromium python3:python3"
 
 wanted=""
 for group in "${@:-build}"; do
@@ -27,8 +29,9 @@ for group in "${@:-build}"; do
 	slow) wanted+=" $slow" ;;
 	slurm) wanted+=" $slurm" ;;
 	bench) wanted+=" $bench" ;;
+	viewer) wanted+=" $viewer" ;;
 	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, bench" >&2
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, bench, viewer" >&2
 		exit 2
 		;;
 	esac

@@ -239,22 +239,26 @@ static bp_status archive_embed(FILE *out, const struct page *page, bp_error *err
 	return BP_OK;
 }
 
-static ssize_t file_cookie_write(void *user, const char *bytes, size_t count)
+/* The output as a stream; what went wrong first is kept. */
+struct output {
+	struct output_file file;
+	bp_error error;
+};
+
+static ssize_t output_stream_write(void *user, const char *bytes, size_t count)
 {
-	return output_file_write(user, bytes, count, NULL) == BP_OK ? (ssize_t)count : 0;
+	struct output *output = user;
+	if (!output->error.status && output_file_write(&output->file, bytes, count, &output->error) == BP_OK)
+		return (ssize_t)count;
+	return 0;
 }
 
-static bp_status page_write(const struct page *page, bp_error *error)
+static bp_status page_write(const struct page *page, struct output *output, bp_error *error)
 {
-	struct output_file file;
-	bp_status status = output_file_open(page->options->output, &file, error);
+	FILE *out = fopencookie(output, "w", (cookie_io_functions_t){.write = output_stream_write});
+	bp_status status = out ? BP_OK : error_memory(error, BUFSIZ);
 	if (status != BP_OK)
 		return status;
-	FILE *out = fopencookie(&file, "w", (cookie_io_functions_t){.write = file_cookie_write});
-	if (!out) {
-		output_file_discard(&file);
-		return error_memory(error, 4096);
-	}
 	page_head_write(out, page);
 	if (page->options->embed)
 		status = archive_embed(out, page, error);
@@ -270,13 +274,12 @@ static bp_status page_write(const struct page *page, bp_error *error)
 	if (page->details && page->count)
 		fputs("</section>\n", out);
 	page_end_write(out);
-	const bool lost = ferror(out) != 0;
-	if ((fclose(out) != 0 || lost) && status == BP_OK)
-		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot write all of it: %s", page->options->output, strerror(errno));
-	if (status == BP_OK)
-		return output_file_commit(&file, error);
-	output_file_discard(&file);
-	return status;
+	fclose(out);
+	if (status == BP_OK && output->error.status) {
+		*error = output->error;
+		status = error->status;
+	}
+	return status == BP_OK ? output_file_commit(&output->file, error) : status;
 }
 
 static void making_free(struct making *making)
@@ -298,6 +301,7 @@ static void making_free(struct making *making)
 int page_run(const struct page_options *options, struct selection *selection)
 {
 	struct making making = {.page = {.options = options, .selection = selection}};
+	struct output output = {.file.fd = -1};
 	struct page *page = &making.page;
 	struct stat facts;
 	bp_error error;
@@ -310,6 +314,8 @@ int page_run(const struct page_options *options, struct selection *selection)
 		                   "--embed: the viewer is not there, so nothing could read the archive; `make viewer` builds it (Debian package emscripten)");
 	if (status == BP_OK)
 		status = sources_find(&making, &error);
+	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */
+		status = output_file_open(options->output, &output.file, &error);
 	if (status == BP_OK) {
 		bp_archive_verify(selection->archive, 0, problem_note, page, NULL);
 		status = materials_draw(&making, &error);
@@ -317,9 +323,10 @@ int page_run(const struct page_options *options, struct selection *selection)
 	if (interrupt_signal())
 		report_text("%s: interrupted; not written", options->output);
 	else if (status == BP_OK)
-		status = page_write(page, &error);
+		status = page_write(page, &output, &error);
 	if (!interrupt_signal() && status != BP_OK)
 		report_error(NULL, NULL, &error);
+	output_file_discard(&output.file);
 	const bool whole = status == BP_OK && !page->failed && !page->problem_count && !selection->incomplete;
 	making_free(&making);
 	return interrupt_signal() ? 128 + interrupt_signal() : whole ? EXIT_OK : EXIT_FAILED;
