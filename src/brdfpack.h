@@ -424,7 +424,7 @@ typedef struct bp_measured {
 	uint32_t theta_h, theta_d, phi_d; /* cells along each axis: 4 to 1024 each, at most 2^24 in all */
 	bp_number number;                 /* BP_NUMBER_FLOAT or BP_NUMBER_DOUBLE */
 	bp_layout layout;
-	const void *values;               /* 3 per cell, R G B, in `layout` */
+	const void *values;               /* 3 per cell, R G B, of its centre (see bp_material), in `layout` */
 	const uint8_t *mask;              /* NULL, or per cell, 0: not measured */
 	double scale[3];                  /* times a value this is 1/sr; all 0: 1. MERL files: 1/1500, 1.15/1500, 1.66/1500 */
 	uint64_t source_bytes;            /* of the file that it comes from; recorded, 0: none */
