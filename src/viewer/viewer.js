@@ -10,7 +10,8 @@ class Viewer {
 		this.turn = 0;
 		this.lamp = LAMP;
 		this.base = 1; // exposure before the slider
-		this.shown = 0;
+		this.turns = { a: 0, b: 0 }; // of show: the last one counts
+		this.busy = 0;
 	}
 	say(text, warning) {
 		const status = this.find("v-status");
@@ -75,16 +76,19 @@ class Viewer {
 	}
 	// Layers 0: all. The preview comes first, then the record takes its place.
 	async show(slot, archive, index, layers = 0) {
-		const turn = ++this.shown, started = performance.now();
+		const turn = ++this.turns[slot], started = performance.now();
+		this.busy++;
 		try {
 			const info = await archive.info(index), same = this.slots[slot] && this.slots[slot].archive === archive && this.slots[slot].index === index;
 			if (!same) {
-				this.put(slot, { archive, index, info, layers: 1, material: await archive.load(index, info, 1, true) });
+				const preview = await archive.load(index, info, 1, true);
+				if (turn !== this.turns[slot]) return preview.free();
+				this.put(slot, { archive, index, info, layers: 1, material: preview });
 				this.previewed = performance.now() - started;
 				await this.painted();
 			}
 			const material = await archive.load(index, info, layers, false);
-			if (turn !== this.shown) return material.free(); // another click came
+			if (turn !== this.turns[slot]) return material.free(); // another click came
 			this.put(slot, { archive, index, info, layers, material });
 			await this.painted();
 			this.read([0, 0.25]); // something to look at before the pointer comes
@@ -92,6 +96,8 @@ class Viewer {
 			this.cost();
 		} catch (error) {
 			this.say(`${archive.source.name}: ${error.message}`, true);
+		} finally {
+			this.busy--;
 		}
 	}
 	put(slot, shown) {
@@ -113,6 +119,7 @@ class Viewer {
 	// A MERL file or an archive that was dropped or chosen.
 	async open(file) {
 		const slot = this.target();
+		this.busy++;
 		try {
 			const head = new DataView(await file.slice(0, 12).arrayBuffer()), merl = file.size === 34992012 && head.getInt32(0, true) === 90;
 			this.say(`Reading ${file.name} …`);
@@ -130,6 +137,8 @@ class Viewer {
 			await this.show(slot, archive, 0);
 		} catch (error) {
 			this.say(`${file.name} cannot be shown: ${error.message}${error.offset >= 0 ? ` (at byte ${error.offset})` : ""}`, true);
+		} finally {
+			this.busy--;
 		}
 	}
 	relight() {
