@@ -182,6 +182,16 @@ async function served(page, server) {
 	console.log(`a material by ranges: ${server.bytes} bytes in ${server.requests} requests; its record has ${record}, the archive ${size}`);
 	check("a material costs its record and at most 16 KB", server.bytes <= record + 16384, server.bytes);
 	check("the page tells what it cost", cost.startsWith(server.bytes.toLocaleString("en") + " of "), cost);
+	// another archive under the name of the one that the page was made of
+	const three = path.join(folder, "three.bpk"), kept = fs.readFileSync(three);
+	fs.copyFileSync(path.join(folder, "odd.bpk"), three);
+	await page.go(here + "report.html");
+	await page.value(`window.brdfpack.ready`);
+	check("another archive beside the page is told", /made of another archive/.test(await page.value(status)), await page.value(status));
+	fs.writeFileSync(three, kept);
+	await page.go(here + "many.html");
+	await page.value(`window.brdfpack.ready`);
+	check("a large contact sheet is live, and its links can be reached by keys", await page.value(`document.querySelectorAll(".tile a[href]").length`) === 200 && await page.value(`viewer.find("v-a").textContent`) === "material-000", await page.value(status));
 	server.bytes = 0;
 	await page.go(here + "plain/report.html");
 	await page.value(`window.brdfpack.ready`);

@@ -44,6 +44,7 @@ class Viewer {
 			this.own = await this.reader.open(await serverSource(name, encodeURIComponent(name), (notice) => { this.notice = notice; }));
 		}
 		this.cost();
+		for (const link of document.querySelectorAll(".tile[data-index] a:not([href])")) link.href = "#viewer"; // to be reached by keys
 		await this.names(this.own);
 		const first = document.querySelector(".tile[data-index]");
 		if (first) await this.show("a", this.own, Number(first.dataset.index));
@@ -79,7 +80,9 @@ class Viewer {
 		const turn = ++this.turns[slot], started = performance.now();
 		this.busy++;
 		try {
-			const info = await archive.info(index), same = this.slots[slot] && this.slots[slot].archive === archive && this.slots[slot].index === index;
+			const info = await archive.info(index), tile = archive === this.own && document.querySelector(`.tile[data-index="${index}"]`);
+			if (tile && tile.dataset.name !== info.name) throw new Error(`this page was made of another archive: number ${index} is ${info.name}, not ${tile.dataset.name}`);
+			const same = this.slots[slot] && this.slots[slot].archive === archive && this.slots[slot].index === index;
 			if (!same) {
 				const preview = await archive.load(index, info, 1, true);
 				if (turn !== this.turns[slot]) return preview.free();

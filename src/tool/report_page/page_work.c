@@ -146,8 +146,8 @@ static bp_status sheet_write(FILE *out, const struct page_job *job, const struct
 		return status;
 	fprintf(out, "<li class=tile data-name=\"");
 	html_text(out, name);
-	fprintf(out, "\" data-index=%llu data-bytes=%u data-error=%.6g data-albedo=%.4f data-colour=%.2f><a%s", (unsigned long long)subject->item->entry.ordinal,
-	        subject->head.record_bytes, fidelity->log_rmse, subject->energy.largest, picture_hue(&thumbnail), job->details ? "" : " tabindex=0");
+	fprintf(out, "\" data-index=%llu data-bytes=%u data-error=%.6g data-albedo=%.4f data-colour=%.2f><a", (unsigned long long)subject->item->entry.ordinal,
+	        subject->head.record_bytes, fidelity->log_rmse, subject->energy.largest, picture_hue(&thumbnail));
 	if (job->details)
 		fprintf(out, " href=\"#m%llu\"", (unsigned long long)subject->item->entry.ordinal);
 	fputs(">", out);
