@@ -4,8 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Length of the well-formed UTF-8 sequence at s (RFC 3629: no overlong form, no surrogate, at most U+10FFFF), or 0. */
-static size_t utf8_sequence(const uint8_t *s, size_t left, uint32_t *code)
+size_t name_utf8(const uint8_t *s, size_t left, uint32_t *code)
 {
 	size_t length = s[0] < 0x80 ? 1 : s[0] < 0xC2 ? 0 : s[0] < 0xE0 ? 2 : s[0] < 0xF0 ? 3 : s[0] < 0xF5 ? 4 : 0;
 	uint32_t value;
@@ -35,7 +34,7 @@ const char *name_fault(const char *name, size_t count)
 		return "\".\" and \"..\" are not names";
 	for (size_t at = 0, step; at < count; at += step) {
 		uint32_t code;
-		step = utf8_sequence(bytes + at, count - at, &code);
+		step = name_utf8(bytes + at, count - at, &code);
 		if (!step)
 			return "it is not UTF-8";
 		if (code < 0x20 || (code >= 0x7F && code < 0xA0))

@@ -6,6 +6,7 @@
 #define NAME_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "brdfpack.h"
 
@@ -14,5 +15,11 @@ const char *name_fault(const char *name, size_t count);
 
 /* -1, 0 or 1, in the archive's order. */
 int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes);
+
+/*
+ * The length of the well-formed UTF-8 sequence (RFC 3629: no overlong form, no surrogate, at most U+10FFFF) that begins at s, and its
+ * character in *code; 0 where there is none within `left` bytes (at least 1). A NUL ends a sequence, so text that one ends may say 4.
+ */
+size_t name_utf8(const uint8_t *s, size_t left, uint32_t *code);
 
 #endif

@@ -2,21 +2,14 @@
 
 #include <stdlib.h>
 
-/* The length of a well-formed UTF-8 sequence, as far as a name's check (name.h) leaves doubts; 0: not one. */
-static int sequence_length(const unsigned char *text)
-{
-	int length = text[0] < 0x80 ? 1 : text[0] >= 0xc2 && text[0] < 0xe0 ? 2 : (text[0] & 0xf0) == 0xe0 ? 3 : text[0] >= 0xf0 && text[0] < 0xf5 ? 4 : 0;
-	for (int i = 1; i < length; i++)
-		if ((text[i] & 0xc0) != 0x80)
-			return 0;
-	return length;
-}
+#include "name.h"
 
 void html_text(FILE *out, const char *string)
 {
 	const unsigned char *text = (const unsigned char *)string;
 	while (*text) {
-		int length = sequence_length(text);
+		uint32_t code = 0;
+		const size_t length = name_utf8(text, 4, &code);
 		switch (*text) {
 		case '&': fputs("&amp;", out); break;
 		case '<': fputs("&lt;", out); break;
@@ -24,10 +17,10 @@ void html_text(FILE *out, const char *string)
 		case '"': fputs("&quot;", out); break;
 		case '\'': fputs("&#39;", out); break;
 		default:
-			if (length == 0 || *text < 0x20 || *text == 0x7f)
+			if (length == 0 || code < 0x20 || (code >= 0x7f && code < 0xa0))
 				fputs("\xef\xbf\xbd", out);
 			else
-				fwrite(text, 1, (size_t)length, out);
+				fwrite(text, 1, length, out);
 		}
 		text += length ? length : 1;
 	}
