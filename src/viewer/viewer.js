@@ -27,7 +27,7 @@ class Viewer {
 		this.polar = new PolarPlot(this.find);
 		this.listen();
 		this.relight();
-		this.find("v-body").hidden = false;
+		this.find("v-open").hidden = false;
 		this.say("Click a sphere below, or drop an archive or a MERL file here; nothing is uploaded.");
 		await this.openOwn();
 	}
@@ -107,13 +107,14 @@ class Viewer {
 		const old = this.slots[slot];
 		this.slots[slot] = shown;
 		if (old) old.material.free();
-		this.drawing.put(slot, shown && shown.material);
-		this.find("v-" + slot).textContent = shown ? shown.info.name : "nothing";
-		const select = this.find("v-layers-" + slot), layers = shown && shown.info.layers || [];
+		this.drawing.put(slot, shown.material);
+		this.find("v-body").hidden = false;
+		this.find("v-" + slot).textContent = shown.info.name;
+		const select = this.find("v-layers-" + slot), { layers } = shown.info;
 		select.replaceChildren(...layers.map((layer, n) => new Option(`${n + 1}: ${layer.bytes} bytes, log RMSE ${layer.error.toPrecision(2)}`, n + 1)));
 		if (layers.length) select.value = shown.layers || layers.length;
 		select.parentElement.hidden = layers.length < 2;
-		if (slot === "b" && shown && this.find("v-mode").value === "a") this.find("v-mode").value = "split";
+		if (slot === "b" && this.find("v-mode").value === "a") this.find("v-mode").value = "split";
 		this.find("v-split-label").hidden = this.find("v-mode").value !== "split";
 		this.find("v-canvas").setAttribute("aria-label", ["a", "b"].filter((s) => this.slots[s]).map((s) => `${s.toUpperCase()}: ${this.slots[s].info.name}`).join(", "));
 		this.expose = true;
