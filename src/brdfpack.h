@@ -338,6 +338,8 @@ typedef struct bp_load_options {
 	int sampling;         /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */
 	const bp_allocator *allocator; /* NULL: malloc. Copied; all that bp_loaded counts in memory_bytes comes from it, and what is needed
 	                                  only while loading from malloc */
+	size_t max_memory_bytes; /* refuse, with BP_ERROR_LIMIT, a material that may need more while it is loaded: 24 bytes per cell and 1 MB, 36 MB
+	                            for MERL's lattice. 0: twice that lattice's need, 72 MB; an archive's few bytes may ask for gigabytes */
 } bp_load_options;
 
 /* What was loaded. */

@@ -1,31 +1,9 @@
 #include "error.h"
 
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
-#include <string.h>
 
-/* Makes one line of whatever names and paths stand in the text: control characters as \xHH. What does not fit is cut between characters. */
-static void message_put(char *to, size_t room, const char *from)
-{
-	size_t used = 0;
-	for (; *from; from++) {
-		const unsigned char c = (unsigned char)*from;
-		const bool control = c < 0x20 || c == 0x7F;
-		if (used + (control ? 4 : 1) >= room)
-			break;
-		if (control)
-			used += (size_t)snprintf(to + used, room - used, "\\x%02x", c);
-		else
-			to[used++] = *from;
-	}
-	if (((unsigned char)*from & 0xC0) == 0x80) { /* within a character: go back to before it */
-		while (used > 0 && ((unsigned char)to[used - 1] & 0xC0) == 0x80)
-			used--;
-		used -= used > 0;
-	}
-	to[used] = 0;
-}
+#include "shown.h"
 
 bp_status error_set(bp_error *error, bp_status status, uint64_t offset, const char *format, ...)
 {
@@ -37,7 +15,7 @@ bp_status error_set(bp_error *error, bp_status status, uint64_t offset, const ch
 		va_start(arguments, format);
 		vsnprintf(text, sizeof text, format, arguments);
 		va_end(arguments);
-		message_put(error->message, sizeof error->message, text);
+		shown_text(error->message, sizeof error->message, text); /* whatever names and paths stand in it */
 	}
 	return status;
 }

@@ -33,7 +33,7 @@ static bp_status header_check(const struct archive_header *header, uint64_t file
 		                 (unsigned long long)file_bytes, (unsigned long long)header->file_bytes);
 	if (header->count > ARCHIVE_COUNT_MAX || header->page_count > ARCHIVE_PAGES_MAX || header->depth > INDEX_DEPTH_MAX ||
 	    (header->count == 0) != (header->page_count == 0) || (header->count == 0) != (header->depth == 0) ||
-	    header->page_count < header->depth)
+	    header->page_count < header->depth || header->count > (uint64_t)header->page_count * LEAF_ENTRIES_MAX)
 		return error_set(error, BP_ERROR_CORRUPT, AT_COUNT, "%llu materials in %u index pages of %u levels cannot be",
 		                 (unsigned long long)header->count, header->page_count, header->depth);
 	if (header->index_offset < ARCHIVE_HEADER_BYTES || header->index_offset > file_bytes ||

@@ -24,6 +24,7 @@ enum {
 	PAGE_BYTES = 4096,
 	PAGE_HEAD_BYTES = 16,
 	PAGE_ENTRIES_MAX = 255,
+	LEAF_ENTRIES_MAX = 226, /* of names of one byte, 18 bytes each */
 	INDEX_DEPTH_MAX = 8
 };
 

@@ -97,6 +97,21 @@ static bp_status material_fill(const bp_archive *archive, const struct index_ent
 	return status;
 }
 
+/* What loading may need: 17 bytes per cell while the model is expanded, 6 of the result, and a few tables. */
+static double need_of(struct lattice_dims dims)
+{
+	return 24.0 * (double)lattice_cells(dims) + 1e6;
+}
+
+static bp_status need_check(const struct record_head *head, size_t most, bp_error *error)
+{
+	const double limit = most > 0 ? (double)most : 2 * need_of(LATTICE_MERL), need = need_of(head->dims);
+	if (need <= limit)
+		return BP_OK;
+	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: a table of %u x %u x %u cells may need %.0f MB, the limit is %.0f; max_memory_bytes sets it",
+	                 head->name, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, need / 1e6, limit / 1e6);
+}
+
 bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out, bp_error *error)
 {
 	const bp_load_options whole = {.struct_bytes = sizeof whole};
@@ -115,6 +130,8 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	status = archive_entry(archive, index, &leaf, &entry, error);
 	if (!status)
 		status = archive_entry_head(archive, &entry, &head, error);
+	if (!status)
+		status = need_check(&head, options->max_memory_bytes, error);
 	if (status)
 		return status;
 

@@ -1,5 +1,11 @@
 #include "sha256.h"
 
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "error.h"
+
 #include <string.h>
 
 void sha256_start(struct sha256 *sha)
@@ -51,4 +57,26 @@ bool sha256_from_hex(const char *hex, uint8_t digest[32])
 		digest[n] = (uint8_t)(high << 4 | low);
 	}
 	return true;
+}
+
+bp_status sha256_of_file(const char *path, char hex[SHA256_HEX_CHARACTERS + 1], bp_error *error)
+{
+	uint8_t bytes[1 << 16], digest[32];
+	struct sha256 sha;
+	bp_status status = BP_OK;
+	FILE *file = fopen(path, "rbe");
+
+	if (!file)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
+	sha256_start(&sha);
+	for (size_t got; (got = fread(bytes, 1, sizeof bytes, file)) > 0;)
+		sha256_add(&sha, bytes, got);
+	if (ferror(file))
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read: %s", strerror(errno));
+	fclose(file);
+	if (status)
+		return status;
+	sha256_finish(&sha, digest);
+	sha256_to_hex(digest, hex);
+	return BP_OK;
 }

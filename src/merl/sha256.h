@@ -9,6 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "brdfpack.h"
+
 enum { SHA256_HEX_CHARACTERS = 64 };
 
 struct sha256 {
@@ -21,6 +23,9 @@ void sha256_start(struct sha256 *sha);
 void sha256_add(void *user, const void *bytes, size_t count);
 
 void sha256_finish(struct sha256 *sha, uint8_t digest[32]);
+
+/* Of a whole file, as hexadecimal digits and a NUL. */
+bp_status sha256_of_file(const char *path, char hex[SHA256_HEX_CHARACTERS + 1], bp_error *error);
 
 /* 64 lower-case digits and a NUL. */
 void sha256_to_hex(const uint8_t digest[32], char hex[SHA256_HEX_CHARACTERS + 1]);

@@ -6,6 +6,7 @@
 #include "report.h"
 
 #include "brdfpack.h"
+#include "merl/spelling.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -42,6 +43,16 @@ static const struct command *command_find(const char *name)
 		if (!strcmp(commands[i]->name, name))
 			return commands[i];
 	return NULL;
+}
+
+static void command_unknown(const char *name)
+{
+	struct name_guess guess;
+	name_guess_start(&guess, name);
+	for (size_t i = 0; commands[i]; i++)
+		name_guess_offer(&guess, commands[i]->name);
+	const char *best = name_guess_best(&guess);
+	report_text("unknown command '%s'%s%s%s; `brdfpack help` lists the commands", name, best ? " (did you mean '" : "", best ? best : "", best ? "'?)" : "");
 }
 
 static void help_print(FILE *out)
@@ -84,7 +95,7 @@ static int run(int argc, char **argv)
 	}
 	const struct command *command = command_find(wants_help ? argv[2] : name);
 	if (!command) {
-		report_text("unknown command '%s'; `brdfpack help` lists the commands", wants_help ? argv[2] : name);
+		command_unknown(wants_help ? argv[2] : name);
 		return EXIT_USAGE;
 	}
 	if (wants_help) {
@@ -98,6 +109,7 @@ int main(int argc, char **argv)
 {
 	streams_secure();
 	signal(SIGPIPE, SIG_IGN); /* a closed pipe shows as a failed write, below */
+	signal(SIGXFSZ, SIG_IGN); /* and so does a file that grows beyond the limit (ulimit -f): "File too large" */
 	int code = run(argc, argv);
 	if (fflush(stdout) != 0 || ferror(stdout)) {
 		if (errno != EPIPE) /* whoever closed the pipe wants to hear no more */

@@ -26,6 +26,14 @@ int options_next(const struct command *command, int argc, char **argv, const cha
 	int option = getopt_long(argc, argv, all_letters, all_names, &index);
 	if (optind > 0 && optind <= argc && option != -1)
 		word = argv[optind - 1];
+	if (index >= 0 && option != '?' && option != ':') {
+		/* getopt takes any beginning of a name that is no other's: a script that relies on one breaks when an option is added. */
+		const char *written = optarg && optarg == word ? argv[optind - 2] : word, *whole = all_names[index].name;
+		if (strcspn(written + 2, "=") != strlen(whole)) {
+			report_usage(command, "unknown option '%.*s' (did you mean '--%s'?)", (int)strcspn(written, "="), written, whole);
+			return OPTIONS_WRONG;
+		}
+	}
 	switch (option) {
 	case -1:
 		return OPTIONS_END;
@@ -42,7 +50,7 @@ int options_next(const struct command *command, int argc, char **argv, const cha
 		else if (optopt && optopt < 128 && isprint(optopt) && strncmp(word, "--", 2) != 0)
 			report_usage(command, "unknown option '-%c'", optopt);
 		else
-			report_usage(command, "unknown or ambiguous option '%s'", word);
+			report_usage(command, "unknown option '%s'", word);
 		return OPTIONS_WRONG;
 	default:
 		return option;

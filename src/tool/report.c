@@ -5,7 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "shown.h"
+
 void (*report_before)(void);
+bool report_workers;
 
 /* One line of a message, built whole and written at once, so that lines of several processes do not mix. */
 struct line {
@@ -15,19 +18,7 @@ struct line {
 
 static void line_add(struct line *line, const char *text)
 {
-	for (; *text; text++) {
-		unsigned char c = (unsigned char)*text;
-		size_t left = sizeof line->text - line->used - 2; /* room for the newline */
-		if (c < 0x20 || c == 0x7f) {
-			if (left < 4)
-				return;
-			line->used += (size_t)sprintf(line->text + line->used, "\\x%02x", c);
-		} else if (left < 1) {
-			return;
-		} else {
-			line->text[line->used++] = (char)c;
-		}
-	}
+	line->used += shown_text(line->text + line->used, sizeof line->text - line->used - 1, text); /* room for the newline */
 }
 
 static void line_add_where(struct line *line, const char *file, const char *material)
@@ -74,7 +65,7 @@ static const char *status_remedy(bp_status status)
 {
 	switch (status) {
 	case BP_ERROR_UNSUPPORTED: return "a newer brdfpack reads it";
-	case BP_ERROR_MEMORY: return "close other programs, or use fewer workers (-j)";
+	case BP_ERROR_MEMORY: return report_workers ? "close other programs, or use fewer workers (-j)" : "close other programs";
 	default: return NULL;
 	}
 }
@@ -136,10 +127,11 @@ int report_usage(const struct command *command, const char *format, ...)
 	return EXIT_USAGE;
 }
 
-int text_columns(const char *text)
+void text_print(const char *text, int width)
 {
-	int columns = 0;
-	for (; *text; text++)
-		columns += ((unsigned char)*text & 0xc0) != 0x80;
-	return columns;
+	char step[SHOWN_STEP_MAX];
+	int columns = 0, one;
+	for (size_t n; (n = shown_next(&text, step, &one)) > 0; columns += one)
+		fwrite(step, 1, n, stdout);
+	printf("%*s", columns < width ? width - columns : 0, "");
 }

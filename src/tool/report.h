@@ -9,6 +9,8 @@
 #ifndef TOOL_REPORT_H
 #define TOOL_REPORT_H
 
+#include <stdbool.h>
+
 #include "brdfpack.h"
 #include "command.h"
 
@@ -31,10 +33,12 @@ int report_usage(const struct command *command, const char *format, ...) __attri
  */
 void error_describe(const bp_error *error, char *text, size_t bytes);
 
-/* Columns that a UTF-8 text without control characters takes: its characters. */
-int text_columns(const char *text);
+/* A name or path on standard output as a terminal may see it (shown.h), and spaces up to `width` columns. */
+void text_print(const char *text, int width);
 
 /* Called before every message when it is not NULL: a progress bar removes itself from the line. */
 extern void (*report_before)(void);
+/* Whether there are worker processes, of which there could be fewer: the pool sets it. */
+extern bool report_workers;
 
 #endif

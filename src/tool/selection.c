@@ -86,8 +86,11 @@ bool selection_head(struct selection *selection, uint64_t n, struct index_entry 
 {
 	bp_error error;
 	*entry = (struct index_entry){.name = ""};
-	if (!selection_entry(selection, n, entry, &error) && !archive_entry_head(selection->archive, entry, head, &error))
+	const bp_status status = selection_entry(selection, n, entry, &error);
+	if (!status && !archive_entry_head(selection->archive, entry, head, &error))
 		return true;
+	if (status && selection->all) /* one message, not one for every material that the header promises */
+		selection->count = n;
 	report_error(selection->path, entry->name[0] ? entry->name : NULL, &error);
 	return false;
 }

@@ -35,7 +35,10 @@ void selection_close(struct selection *selection);
 /* The index entry of the n-th selected material. A walk over all reads every index page once. */
 bp_status selection_entry(struct selection *selection, uint64_t n, struct index_entry *entry, bp_error *error);
 
-/* The same with the record's head; reports what goes wrong, and is false then. */
+/*
+ * The same with the record's head; reports what goes wrong, and is false then. Where the index itself fails, a walk over all
+ * ends: `count` becomes n.
+ */
 bool selection_head(struct selection *selection, uint64_t n, struct index_entry *entry, struct record_head *head);
 
 #endif

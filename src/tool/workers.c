@@ -5,6 +5,7 @@
 #include "workers.h"
 
 #include "error.h"
+#include "report.h"
 #include "worker_process.h"
 
 #include <errno.h>
@@ -121,6 +122,7 @@ bp_status workers_start(const struct workers_options *options, struct workers **
 	if (!pool)
 		return error_memory(error, sizeof *pool);
 	pool->options = *options;
+	report_workers = options->count > 1;
 	pool->setup = (struct worker_setup){options->work, options->work_user, pool->worker, options->count, pool->slot_fd};
 	for (unsigned i = 0; i < options->slot_count; i++)
 		pool->slot_fd[i] = -1;

@@ -23,7 +23,10 @@ static bp_status slot_read(void *user, void *bytes, size_t capacity, size_t *cou
 	struct slot_reader *slot = user;
 	size_t wanted = capacity < slot->left ? capacity : (size_t)slot->left;
 	/* pread: the descriptor's position is shared with the parent and the other workers */
-	ssize_t got = pread(slot->fd, bytes, wanted, (off_t)slot->offset);
+	ssize_t got;
+	do
+		got = pread(slot->fd, bytes, wanted, (off_t)slot->offset);
+	while (got < 0 && errno == EINTR);
 	if (got < 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the copied member: %s", strerror(errno));
 	slot->offset += (uint64_t)got;
@@ -32,6 +35,7 @@ static bp_status slot_read(void *user, void *bytes, size_t capacity, size_t *cou
 	return BP_OK;
 }
 
+#ifndef BRDFPACK_RELEASE
 /*
  * For tests: BRDFPACK_TEST_CRASH=NAME lets the worker that gets this material die of SIGSEGV;
  * NAME:1 only at the first attempt. BRDFPACK_TEST_SLEEP=SECONDS delays every material.
@@ -49,6 +53,7 @@ static void test_hooks(const struct job *job)
 	if (seconds)
 		sleep((unsigned)atoi(seconds));
 }
+#endif
 
 static void checksum_add(void *user, const void *bytes, size_t count)
 {
@@ -107,7 +112,9 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 		.seen = checksum_add, .seen_user = &sha, .any_dims = build->options->any_lattice, .carried = &carried};
 	bp_status status;
 
+#ifndef BRDFPACK_RELEASE
 	test_hooks(job);
+#endif
 	stage_enter(STAGE_READ);
 	sha256_start(&sha);
 	if (fd >= 0)

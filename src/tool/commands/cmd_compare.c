@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "shown.h"
 
 /* The plan of every pixel and light is kept: 0.7 GB at 512 pixels. */
 enum { COMPARE_SIZE_MAX = 512 };
@@ -218,7 +219,7 @@ static void name_width_set(struct compare *compare)
 {
 	compare->report.name_width = (int)strlen("material");
 	for (size_t n = 0; n < compare->count; n++) {
-		int width = text_columns(compare->items[n].entry.name);
+		int width = shown_columns(compare->items[n].entry.name);
 		if (width > compare->report.name_width)
 			compare->report.name_width = width;
 	}

@@ -18,13 +18,14 @@ struct table {
 	struct expansion expansion;
 	uint8_t *below;
 	double limit; /* of `below` */
+	bool any_lattice; /* also tables of more than twice as many cells as MERL's: few bytes of an archive can ask for gigabytes */
 };
 
 static void table_free(struct table *table)
 {
 	expansion_free(&table->expansion);
 	free(table->below);
-	*table = (struct table){0};
+	*table = (struct table){.any_lattice = table->any_lattice};
 }
 
 static bool dims_equal(struct lattice_dims a, struct lattice_dims b)
@@ -67,6 +68,9 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 {
 	struct model *model = NULL;
 	uint8_t *record = NULL;
+	if (!table->any_lattice && lattice_cells(head->dims) > 2 * lattice_cells(LATTICE_MERL))
+		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "a table of %u x %u x %u cells would take %.0f MB; with --any-lattice it is written",
+		                 head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, (double)merl_file_bytes(head->dims) / 1e6);
 	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
 	if (!status && !plain)
 		status = record_read(selection, entry, &record, error);
@@ -132,10 +136,10 @@ static bool material_extract(struct selection *selection, uint64_t n, const char
 
 static int extract_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN };
+	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_ANY_LATTICE };
 	static const struct option names[] = {
 		{"directory", required_argument, NULL, 'C'}, {"format", required_argument, NULL, OPTION_FORMAT},
-		{"plain", no_argument, NULL, OPTION_PLAIN}, {0}};
+		{"plain", no_argument, NULL, OPTION_PLAIN}, {"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE}, {0}};
 	const char *folder = ".";
 	struct selection selection;
 	struct table table = {0};
@@ -147,6 +151,8 @@ static int extract_main(const struct command *self, int argc, char **argv)
 			folder = optarg;
 		else if (option == OPTION_PLAIN)
 			plain = true;
+		else if (option == OPTION_ANY_LATTICE)
+			table.any_lattice = true;
 		else if (!strcmp(optarg, "json") || !strcmp(optarg, "merl"))
 			json = optarg[0] == 'j';
 		else
@@ -175,7 +181,7 @@ const struct command command_extract = {
 	.name = "extract",
 	.run = extract_main,
 	.description = "write materials as MERL files, or their parameters as JSON",
-	.usage = "Usage: brdfpack extract [-C DIR] [--format merl|json] [--plain] ARCHIVE [NAME]...\n"
+	.usage = "Usage: brdfpack extract [-C DIR] [OPTION]... ARCHIVE [NAME]...\n"
 	         "Writes DIR/NAME.binary for the named materials, or for all. Cells wholly below the horizon\n"
 	         "are negative, all others hold the model's value. The negative ones carry the material's\n"
 	         "record, which a build with the same profile and a budget that holds it takes over as it\n"
@@ -184,6 +190,7 @@ const struct command command_extract = {
 	         "  -C, --directory DIR  where to (default: here); created when it is missing\n"
 	         "      --format merl    MERL files (the default)\n"
 	         "      --format json    DIR/NAME.json with the parameters instead\n"
+	         "      --any-lattice    also tables of more than twice as many cells as MERL's\n"
 	         "      --plain          no record: every cell below the horizon is -1\n"
 	         "  -h, --help           this text\n",
 };

@@ -5,6 +5,7 @@
 #include "tool/selection.h"
 
 #include "merl/sha256.h"
+#include "shown.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -19,9 +20,9 @@ static int widest_name(struct selection *selection)
 {
 	struct index_entry entry;
 	int widest = 8; /* "material" */
-	for (uint64_t i = 0; i < selection->count; i++)
-		if (!selection_entry(selection, i, &entry, NULL) && text_columns(entry.name) > widest)
-			widest = text_columns(entry.name);
+	for (uint64_t i = 0; i < selection->count && !selection_entry(selection, i, &entry, NULL); i++)
+		if (shown_columns(entry.name) > widest)
+			widest = shown_columns(entry.name);
 	return widest;
 }
 
@@ -34,8 +35,8 @@ static void number_print(double value)
 
 static void row_print(const struct record_head *head, int width)
 {
-	printf("%s%*s %9" PRIu32 "  %-8s %6" PRIu32 "  %8.5f ", head->name, width - text_columns(head->name), "", head->record_bytes,
-	       profile_name(head->profile), head->layer_count, head_fidelity(head)->log_rmse);
+	text_print(head->name, width);
+	printf(" %9" PRIu32 "  %-8s %6" PRIu32 "  %8.5f ", head->record_bytes, profile_name(head->profile), head->layer_count, head_fidelity(head)->log_rmse);
 	for (int c = 0; c < 3; c++)
 		number_print(head->colour[c].diffuse);
 	putchar(' ');
@@ -62,7 +63,8 @@ static void material_print(const struct record_head *head)
 {
 	char sha256[SHA256_HEX_CHARACTERS + 1];
 	sha256_to_hex(head->source.sha256, sha256);
-	printf("%s\n", head->name);
+	text_print(head->name, 0);
+	putchar('\n');
 	printf("  record      %" PRIu32 " bytes, profile %s, ", head->record_bytes, profile_name(head->profile));
 	if (head->codec_version == RECORD_LAYERS_DROPPED)
 		printf("layers dropped, ");
@@ -113,7 +115,7 @@ static void material_json(const struct record_head *head)
 	json_finish(&json);
 }
 
-static void totals_json(const struct selection *selection, const struct totals *totals)
+static void totals_json(const struct selection *selection, const struct totals *totals, const char *sha256)
 {
 	struct json json = json_begin(stdout, false);
 	json_object(&json, NULL);
@@ -122,6 +124,8 @@ static void totals_json(const struct selection *selection, const struct totals *
 	json_integer(&json, "materials", totals->materials);
 	json_integer(&json, "bytes", totals->record_bytes);
 	json_integer(&json, "source_bytes", totals->source_bytes);
+	if (sha256[0])
+		json_string(&json, "sha256", sha256);
 	json_close(&json);
 	json_finish(&json);
 }
@@ -137,14 +141,15 @@ static void totals_print(const struct totals *totals)
 
 static int list_main(const struct command *self, int argc, char **argv)
 {
-	static const struct option names[] = {{"json", no_argument, NULL, 'j' + OPTION_LONG}, {0}};
+	enum { JSON = OPTION_LONG, SHA256 };
+	static const struct option names[] = {{"json", no_argument, NULL, JSON}, {"sha256", no_argument, NULL, SHA256}, {0}};
 	struct selection selection;
 	struct totals totals = {0};
-	bool json = false;
+	bool json = false, digest = false;
 	int option, width = 0;
 
 	while ((option = options_next(self, argc, argv, "", names)) >= 0)
-		json = true; /* the only option */
+		*(option == JSON ? &json : &digest) = true;
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
 	int opened = selection_from(&selection, self, argv + optind, argc - optind);
@@ -172,10 +177,18 @@ static int list_main(const struct command *self, int argc, char **argv)
 		totals.record_bytes += head.record_bytes;
 		totals.source_bytes += head.source.bytes;
 	}
+	char sha256[SHA256_HEX_CHARACTERS + 1] = "";
+	bp_error error;
+	if (digest && sha256_of_file(selection.path, sha256, &error)) {
+		report_error(selection.path, NULL, &error);
+		totals.failed++;
+	}
 	if (json)
-		totals_json(&selection, &totals);
+		totals_json(&selection, &totals, sha256);
 	else if (selection.all)
 		totals_print(&totals);
+	if (sha256[0] && !json)
+		printf("SHA-256 %s\n", sha256);
 	bool whole = totals.failed == 0 && !selection.incomplete;
 	selection_close(&selection);
 	return whole ? EXIT_OK : EXIT_FAILED;
@@ -185,9 +198,10 @@ const struct command command_list = {
 	.name = "list",
 	.run = list_main,
 	.description = "show what is in an archive",
-	.usage = "Usage: brdfpack list [--json] ARCHIVE [NAME]...\n"
+	.usage = "Usage: brdfpack list [OPTION]... ARCHIVE [NAME]...\n"
 	         "Prints one row per material, and totals. With names: everything about these materials.\n"
 	         "\n"
+	         "      --sha256 also the SHA-256 of the whole file, to sign or to compare; reads all of it\n"
 	         "      --json   one JSON object per material, then a summary object\n"
 	         "  -h, --help   this text\n",
 };

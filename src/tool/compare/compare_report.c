@@ -75,7 +75,7 @@ void compare_report_head(const struct compare_report *report)
 static void text_row(const struct compare_report *report, const char *name, const double values[FIGURE_COUNT],
                      const struct worst_cell *worst)
 {
-	printf("%s%*s", name, report->name_width - text_columns(name), "");
+	text_print(name, report->name_width);
 	for (int f = 0; f < FIGURE_COUNT; f++) {
 		if (!figure_shown(report, f))
 			continue;
