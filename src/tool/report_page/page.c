@@ -50,10 +50,13 @@ static bp_status items_read(struct making *making, bp_error *error)
 	page->items = making->items;
 	if (!making->items || !page->outcomes)
 		return error_memory(error, page->count * sizeof *making->items);
-	bp_status status = BP_OK;
-	for (size_t n = 0; n < page->count && status == BP_OK; n++)
-		status = selection_entry(page->selection, n, &making->items[n].entry, error);
-	return status;
+	for (size_t n = 0; n < page->count; n++)
+		if (selection_entry(page->selection, n, &making->items[n].entry, error) != BP_OK) { /* the index is damaged: those before are shown */
+			report_error(page->selection->path, NULL, error);
+			page->selection->incomplete = true;
+			page->count = n;
+		}
+	return BP_OK;
 }
 
 static bp_status sources_find(struct making *making, bp_error *error)

@@ -1,4 +1,5 @@
 # A page of an archive: whole, escaped, with and without measured files; what is damaged is named and the rest shown.
+VECTORS=$(dirname "$0")/../../../format-spec/vectors
 fixture alpha beta
 cp alpha.binary "a <b> \"c\" & 'd'.binary"
 build -q -o out.bpk .
@@ -30,4 +31,9 @@ grep -c '<section class=material' damaged.html
 grep -o 'data-name="alpha"><span class="ball hole"' damaged.html
 grep -o '<section id=verify.*</h3>' damaged.html
 grep -c '<li><bdi>alpha</bdi>: ' damaged.html
+# a damaged page of the index: what comes before it is shown
+cp "$VECTORS/bad-leaf-twice.bpk" .
+code brdfpack report -q -o leaf.html bad-leaf-twice.bpk
+grep -o '<header>.*' leaf.html
+grep -c '<li class=tile' leaf.html
 ls
