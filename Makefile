@@ -28,13 +28,14 @@ SONAME   := libbrdfpack.so.$(firstword $(subst ., ,$(VERSION)))
 SHARED   := libbrdfpack.so.$(VERSION)
 
 # The library: everything a renderer links. The tool adds sources (libarchive), images and the command line.
-TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c container.c sha256.c demo.c) src/memory_stream.c
+TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c source_names.c source_read.c container.c container_fault.c sha256.c demo.c \
+	normal_form.c spelling.c) src/memory_stream.c
 LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/merl/*.c src/model/*.c src/model/*/*.c src/codec/*.c src/codec/*/*.c src/archive/*.c))
 TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c src/tool/*/*.c)
 # The half that only reads: what is left of these sources when the linker drops what no function of it calls.
-WRITER_C     := $(addprefix src/,output_file.c merl/merl_file.c merl/carried.c merl/spelling.c) \
+WRITER_C     := $(addprefix src/,output_file.c output_file_sweep.c output_path.c merl/merl_file.c merl/carried.c) \
 	$(addprefix src/codec/record_,carried.c copy.c measure.c pack.c) \
-	$(addprefix src/archive/,gather.c index_write.c merge.c pack.c recover.c temporary.c writer.c)
+	$(addprefix src/archive/,gather.c index_write.c merge.c pack.c recover.c writer.c)
 READER_C     := $(filter-out $(WRITER_C) $(wildcard src/model/fidelity*.c),$(LIBRARY_C))
 READER_CALLS := $(addprefix bp_,version version_text status_text free table_bytes $(addprefix archive_,open open_memory open_source close \
 	count bytes_read name find info layers sections record table verify) $(addprefix material_,load free loaded evaluate nearest \
@@ -69,7 +70,7 @@ help:
 	@echo "  pinned       bytes, errors and values of the demo materials against tests/pinned.tsv"
 	@echo "  viewer       the page's viewer, in $(BUILD)/viewer: the reader as WebAssembly (needs emscripten)"
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target"
-	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, pkg-config file, man pages"
+	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, files for pkg-config and CMake, man pages, completions"
 	@echo "  uninstall    removes what install wrote"
 	@echo "  reader-sources  lists the sources of the half that only reads (compile with -Isrc, and -DBP_PORTABLE where there is no POSIX)"
 	@echo "  clean        removes $(BUILD)/"
@@ -146,7 +147,19 @@ $(BUILD)/brdfpack: $(TOOL_O) $(BUILD)/internal.a
 $(BUILD)/brdfpack.pc: src/brdfpack.pc.in src/brdfpack.h FORCE
 	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
 
-install: all $(BUILD)/brdfpack.pc
+# where the package configuration finds PREFIX, from LIBDIR
+TO_PREFIX = $(shell realpath -ms --relative-to="$(LIBDIR)" "$(PREFIX)")
+$(BUILD)/%.cmake: src/%.cmake.in src/brdfpack.h FORCE
+	@sed -e 's|@TO_PREFIX@|$(TO_PREFIX)|; s|@VERSION@|$(VERSION)|g; s|@SHARED@|$(SHARED)|; s|@SONAME@|$(SONAME)|' $< > $@
+CMAKE_FILES := brdfpackConfig.cmake brdfpackConfigVersion.cmake
+SHARE        = $(DESTDIR)$(PREFIX)/share
+
+install: all $(BUILD)/brdfpack.pc $(addprefix $(BUILD)/,$(CMAKE_FILES))
+	install -d $(DESTDIR)$(LIBDIR)/cmake/brdfpack $(SHARE)/bash-completion/completions $(SHARE)/zsh/site-functions $(SHARE)/fish/vendor_completions.d
+	install -m 644 $(addprefix $(BUILD)/,$(CMAKE_FILES)) $(DESTDIR)$(LIBDIR)/cmake/brdfpack/
+	install -m 644 scripts/completions/brdfpack.bash $(SHARE)/bash-completion/completions/brdfpack
+	install -m 644 scripts/completions/_brdfpack $(SHARE)/zsh/site-functions/
+	install -m 644 scripts/completions/brdfpack.fish $(SHARE)/fish/vendor_completions.d/
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man3
 	install -m 755 $(BUILD)/brdfpack $(DESTDIR)$(PREFIX)/bin/
 	install -m 644 src/brdfpack.h $(DESTDIR)$(PREFIX)/include/
@@ -160,6 +173,8 @@ install: all $(BUILD)/brdfpack.pc
 	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
 
 uninstall:
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/cmake/brdfpack/,$(CMAKE_FILES)) $(SHARE)/bash-completion/completions/brdfpack
+	rm -f $(SHARE)/zsh/site-functions/_brdfpack $(SHARE)/fish/vendor_completions.d/brdfpack.fish
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/libbrdfpack_reader.a
 	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man3/libbrdfpack.3

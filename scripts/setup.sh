@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, and nothing that is already there.
 #
-#     scripts/setup.sh [build|test|slow|slurm|bench|viewer]...      default: build
+#     scripts/setup.sh [build|test|slow|slurm|mitsuba|debian|bench|viewer]...      default: build
 #
 #     build  what the tool and the library need
 #     test   what the unit tests (also those of the benchmark) and command-line tests need besides
 #     slow   what the clang, sanitizer and valgrind jobs need besides
 #     slurm  what the job on Slurm needs besides
+#     mitsuba  what the job with Mitsuba 3 needs besides
+#     debian  what makes and checks the Debian packages
 #     bench  what the benchmarks and their plots need besides
 #     viewer what the page's viewer is built with, and the browser that tests it
 #
@@ -15,9 +17,11 @@ set -euo pipefail
 
 # package:command, where any version of the command will do, however it was installed
 build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
-test="gcc-multilib libcmocka-dev libgsl-dev python3:python3 pkg-config:pkg-config liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
+test="gcc-multilib libcmocka-dev libgsl-dev python3:python3 python3-dev python3-venv pkg-config:pkg-config cmake:cmake liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
+mitsuba="libllvm19"
+debian="dpkg-dev debhelper lintian"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 viewer="emscripten:emcc nodejs:node chromium:chromium python3:python3"
 
@@ -28,10 +32,12 @@ for group in "${@:-build}"; do
 	test) wanted+=" $test" ;;
 	slow) wanted+=" $slow" ;;
 	slurm) wanted+=" $slurm" ;;
+	mitsuba) wanted+=" $mitsuba" ;;
+	debian) wanted+=" $debian" ;;
 	bench) wanted+=" $bench" ;;
 	viewer) wanted+=" $viewer" ;;
 	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, bench, viewer" >&2
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, mitsuba, debian, bench, viewer" >&2
 		exit 2
 		;;
 	esac

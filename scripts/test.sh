@@ -9,6 +9,9 @@
 #     portable  the reading half: what it links, and its values without the system and on 32 bits
 #     install   installs into a scratch folder; symbols; a consumer built through pkg-config
 #     python    the independent Python reader against the C library
+#     package   the Python package in a clean virtual environment (skipped where pip reaches no index)
+#     mitsuba   the plugin for Mitsuba 3, which pip fetches (in continuous integration, or when named; skipped where pip cannot)
+#     debian    Debian packages of the tree, and lintian (in continuous integration, or when named)
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
 #     clang     builds everything by clang with warnings as errors
 #     valgrind  a small build, list, extract and verify under valgrind
@@ -26,8 +29,8 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
-all_jobs="asan faults fuzz viewer python stress unit pinned cli bench install portable valgrind clang house"
-on_request="slurm"
+all_jobs="asan faults fuzz viewer python stress unit pinned package cli bench install portable valgrind clang house"
+on_request="slurm mitsuba debian"
 logs=build/logs
 passed=0
 failed=0
@@ -152,6 +155,16 @@ job_asan() {
 job_clang() { build clang; }
 job_install() { build test && check "installed library" "$logs/install.log" tests/install.sh build/test "${test_flags[@]}"; }
 job_portable() { build test && check "the reading half alone" "$logs/portable.log" tests/portable.sh build/test; }
+job_mitsuba() {
+	build test || return
+	scripts/setup.sh mitsuba >"$logs/setup-mitsuba.log" 2>&1 || true
+	check "the plugin for Mitsuba 3" "$logs/mitsuba.log" tests/mitsuba.sh build/test
+}
+job_debian() {
+	scripts/setup.sh debian >"$logs/setup-debian.log" 2>&1 || true
+	check "Debian packages" "$logs/debian.log" tests/debian.sh
+}
+job_package() { build test && check "the Python package" "$logs/package.log" tests/python_package.sh build/test; }
 job_python() {
 	build test || return
 	check "python reader, vectors" "$logs/python-vectors.log" tests/python_reader.sh build/test
@@ -181,7 +194,7 @@ job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECON
 test_flags=(CFLAGS="-O3 -g -Werror")
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
-if wanted unit cli install portable python valgrind stress faults pinned bench slurm viewer; then prepare test "${test_build[@]}" all tests; fi
+if wanted unit cli install portable package mitsuba python valgrind stress faults pinned bench slurm viewer; then prepare test "${test_build[@]}" all tests; fi
 if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
 if wanted viewer; then
 	scripts/setup.sh viewer >"$logs/setup-viewer.log" 2>&1 || true

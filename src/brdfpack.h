@@ -484,8 +484,10 @@ BP_API bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t 
 BP_API uint64_t bp_writer_count(const bp_writer *writer);
 
 /*
- * Writes the archive to a file beside `path`, syncs it, and renames it over `path`: what was there before stays as it was
- * unless all of this succeeds. The writer stays usable. Errors: BP_ERROR_IO, BP_ERROR_MEMORY.
+ * Writes the archive to a file beside `path`, syncs it, and renames it over `path`: what was there before, whatever it was, stays as
+ * it was unless all of this succeeds. A link is followed; mode and owner are kept. Where only the folder could not be synced after
+ * that, this is BP_OK, and the error's message says so; otherwise it is empty then. The writer stays usable.
+ * Errors: BP_ERROR_IO, BP_ERROR_MEMORY, BP_ERROR_ARGUMENT for an empty path.
  */
 BP_API bp_status bp_writer_save(const bp_writer *writer, const char *path, bp_error *error);
 

@@ -1,10 +1,11 @@
 #include "name.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdint.h>
 #include <string.h>
 
-size_t name_utf8(const uint8_t *s, size_t left, uint32_t *code)
+size_t name_character(const uint8_t *s, size_t left, uint32_t *code)
 {
 	size_t length = s[0] < 0x80 ? 1 : s[0] < 0xC2 ? 0 : s[0] < 0xE0 ? 2 : s[0] < 0xF0 ? 3 : s[0] < 0xF5 ? 4 : 0;
 	uint32_t value;
@@ -34,7 +35,7 @@ const char *name_fault(const char *name, size_t count)
 		return "\".\" and \"..\" are not names";
 	for (size_t at = 0, step; at < count; at += step) {
 		uint32_t code;
-		step = name_utf8(bytes + at, count - at, &code);
+		step = name_character(bytes + at, count - at, &code);
 		if (!step)
 			return "it is not UTF-8";
 		if (code < 0x20 || (code >= 0x7F && code < 0xA0))
@@ -43,6 +44,36 @@ const char *name_fault(const char *name, size_t count)
 			return "it holds a '/'";
 	}
 	return NULL;
+}
+
+bool name_text(const char *name)
+{
+	uint32_t code;
+	for (size_t left = strlen(name), step; left > 0; name += step, left -= step)
+		if (!(step = name_character((const uint8_t *)name, left, &code)))
+			return false;
+	return true;
+}
+
+size_t name_escape(const char *name, char *to, size_t room)
+{
+	const bool text = name_text(name); /* else what looks like a character in it is chance */
+	size_t used = 0;
+	for (size_t left = strlen(name); left > 0 && used + 5 <= room;) {
+		uint32_t code;
+		size_t step = name_character((const uint8_t *)name, left, &code);
+		if (step > 0 && (text || step == 1) && code >= 0x20 && !(code >= 0x7F && code < 0xA0)) {
+			memcpy(to + used, name, step);
+			used += step;
+		} else {
+			used += (size_t)sprintf(to + used, "\\x%02x", (unsigned)(uint8_t)*name);
+			step = 1;
+		}
+		name += step;
+		left -= step;
+	}
+	to[used] = '\0';
+	return used;
 }
 
 int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes)

@@ -5,6 +5,7 @@
 #ifndef NAME_H
 #define NAME_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -13,13 +14,19 @@
 /* NULL when `count` bytes at `name` are a legal name, otherwise why not, as a clause: "it is empty". */
 const char *name_fault(const char *name, size_t count);
 
+/*
+ * Length of the well-formed UTF-8 sequence at s (RFC 3629: no overlong form, no surrogate, at most U+10FFFF), its character in *code; or 0.
+ * A NUL ends a sequence, so text that one ends may say 4 for `left`.
+ */
+size_t name_character(const uint8_t *s, size_t left, uint32_t *code);
+
+/* Whether the bytes are UTF-8, whatever the characters. */
+bool name_text(const char *name);
+
+/* What can be shown of any bytes: control characters, and all but ASCII where they are no UTF-8, as \xHH. NUL-terminated in to[room], cut where it is full. */
+size_t name_escape(const char *name, char *to, size_t room);
+
 /* -1, 0 or 1, in the archive's order. */
 int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes);
-
-/*
- * The length of the well-formed UTF-8 sequence (RFC 3629: no overlong form, no surrogate, at most U+10FFFF) that begins at s, and its
- * character in *code; 0 where there is none within `left` bytes (at least 1). A NUL ends a sequence, so text that one ends may say 4.
- */
-size_t name_utf8(const uint8_t *s, size_t left, uint32_t *code);
 
 #endif

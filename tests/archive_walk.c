@@ -105,7 +105,7 @@ static uint32_t material_extract(const bp_archive *archive, uint64_t m)
 	below = malloc(lattice_cells(model->dims));
 	if (!below || lattice_below_horizon(model->dims, model->horizon_limit, below, NULL) != BP_OK || model_expand(model, 0, &table, NULL) != BP_OK)
 		goto out;
-	if (lattice_write_path(path, &table, below, record, head.record_bytes, NULL) == BP_OK) {
+	if (lattice_write_path(path, OUTPUT_REPLACE, &table, below, record, head.record_bytes, NULL) == BP_OK) {
 		crc = file_crc32(path);
 		unlink(path);
 	}
@@ -115,6 +115,39 @@ out:
 	free(record);
 	free(below);
 	return crc;
+}
+
+/* Material m through the public calls that copy: its table, and its record into an archive in memory, where it must be the same. */
+static void material_copy(const bp_archive *archive, uint64_t m, const char *name)
+{
+	static uint16_t table[3 * WALK_CELLS_MAX];
+	const bp_table_options options = {.struct_bytes = sizeof options, .number = BP_NUMBER_HALF, .layout = BP_LAYOUT_INTERLEAVED};
+	bp_material_info info = {.struct_bytes = sizeof info};
+	bp_layer layers[BP_LAYERS_MAX];
+	bp_section sections[BP_SECTIONS_MAX];
+	bp_writer *writer = NULL;
+	bp_archive *copy = NULL;
+	uint8_t *record = NULL, *again = NULL, *bytes = NULL;
+	size_t record_bytes, again_bytes, count;
+	uint64_t index;
+
+	if (bp_archive_info(archive, m, &info, NULL) != BP_OK ||
+	    bp_archive_layers(archive, m, sizeof *layers, layers, BP_LAYERS_MAX, NULL, NULL) != BP_OK ||
+	    bp_archive_sections(archive, m, sizeof *sections, sections, BP_SECTIONS_MAX, NULL, NULL) != BP_OK)
+		return;
+	bp_archive_table(archive, m, &options, table, bp_table_bytes(info.theta_h, info.theta_d, info.phi_d, &options), NULL);
+	if (bp_archive_record(archive, m, &record, &record_bytes, NULL) != BP_OK)
+		return;
+	if (bp_writer_create(&writer, NULL) != BP_OK || bp_writer_add(writer, record, record_bytes, NULL) != BP_OK ||
+	    bp_writer_save_memory(writer, &bytes, &count, NULL) != BP_OK || bp_archive_open_memory(bytes, count, &copy, NULL) != BP_OK ||
+	    bp_archive_find(copy, name, &index, NULL) != BP_OK || bp_archive_record(copy, index, &again, &again_bytes, NULL) != BP_OK ||
+	    again_bytes != record_bytes || memcmp(again, record, record_bytes) != 0)
+		abort();
+	bp_archive_close(copy);
+	bp_writer_free(writer);
+	bp_free(bytes);
+	bp_free(again);
+	bp_free(record);
 }
 
 bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned also, struct walk_values *seen, uint64_t *seen_count)
@@ -146,8 +179,10 @@ bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned
 			continue;
 		material_walk(material, &values);
 		bp_material_free(material);
-		if (also & WALK_EXTRACT)
+		if (also & WALK_EXTRACT) {
 			values.extracted = material_extract(archive, m);
+			material_copy(archive, m, values.name);
+		}
 		if (seen)
 			seen[count] = values;
 		count++;

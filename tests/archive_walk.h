@@ -19,7 +19,7 @@ struct walk_values {
 /* What is done beside: */
 enum {
 	WALK_LIST = 1,   /* every head is read and parsed, and all that `list` says of up to `most` materials printed */
-	WALK_EXTRACT = 2 /* each material that loads is written as a file that carries its record, as by `extract` */
+	WALK_EXTRACT = 2 /* each material that loads is written as a file that carries its record, as by `extract`, and copied by the public calls */
 };
 
 /*

@@ -4,7 +4,7 @@
 --kills: only the kills, of builds of the MERL files of FOLDER.
 
 Builds of small materials are killed, interrupted, starved of disk and memory, and have their calls fail. After
-each, the output must be the old archive or the new one, whole; the exit code 0 only with the new one; and after
+each, the output must be the old archive or the new one, whole; the exit code 0 with the new one alone, another with the old; and after
 the next build nothing else may lie in the folder, nor before it unless a signal ended the build. The commands that
 read archives have their calls fail too, with the same demands on the files they write. Prints one line per kind of fault.
 """
@@ -68,7 +68,7 @@ class Place:
         measured, extracted = folder + "/other.binary", self.inputs + "/other.binary"
         fixtures.write(measured, fixtures.table(5, (16, 16, 24)), (16, 16, 24))
         self.run([measured])
-        subprocess.run([TOOL, "extract", "-C", folder, "--plain", self.target], check=True)
+        subprocess.run([TOOL, "extract", "--force", "-C", folder, "--plain", self.target], check=True)
         subprocess.run([TOOL, "extract", "-C", self.inputs, self.target], check=True)
         report = subprocess.run(self.command([extracted]) + ["--json"], check=True, stdout=subprocess.PIPE).stdout
         kept = read(self.target)
@@ -93,6 +93,8 @@ class Place:
             fault(what + ": the output is neither the old archive nor the new one")
         if code == 0 and now != self.new:
             fault(what + ": exit code 0 without the new archive")
+        if code > 0 and now != self.old:
+            fault("%s: exit code %d, but it was written" % (what, code))
         if code >= 0 and os.listdir(self.out) != ["out.bpk"]:
             fault("%s: it leaves %s" % (what, os.listdir(self.out)))
         try:
@@ -288,6 +290,8 @@ class Command:
             for name in set(now) & set(self.new):
                 if now[name] not in (old, self.new[name]) and not (code != 0 and self.saves_less(kind, name)):
                     fault("%s: %s is neither the old file nor the new one" % (what, name))
+                if code > 0 and len(self.new) == 1 and now[name] == self.new[name] != old and self.name != "recover":
+                    fault("%s: exit code %d, but %s was written" % (what, code, name))
             self.reset(old)
         self.reset(old)
         failing_calls(self.name, self.command, check)
@@ -306,11 +310,11 @@ def failing_commands(place, folder):
             file.write(data)
     subprocess.run([TOOL, "subset", "-q", "-o", rest, whole, "material-1", "other"], check=True)
     archive = out + "/out.bpk"
-    commands = {"list": ["list", "--json", whole], "verify": ["verify", "--deep", whole], "extract": ["extract", "-C", out, whole],
-                "extract, json": ["extract", "--format", "json", "-C", out, whole],
+    commands = {"list": ["list", "--json", whole], "verify": ["verify", "--deep", whole], "extract": ["extract", "--force", "-C", out, whole],
+                "extract, json": ["extract", "--force", "--format", "json", "-C", out, whole],
                 "subset": ["subset", "-o", archive, whole, "material-2", "other"], "merge": ["merge", "-o", archive, first, rest],
-                "recover": ["recover", "-o", archive, whole], "render": ["render", "--size", "12", "-o", out + "/o.png", whole, "other"],
-                "show": ["show", "-o", out + "/o.svg", whole, "material-0"]}
+                "recover": ["recover", "-o", archive, whole], "render": ["render", "--force", "--size", "12", "-o", out + "/o.png", whole, "other"],
+                "show": ["show", "--force", "-o", out + "/o.svg", whole, "material-0"]}
     for name, words in commands.items():
         shutil.rmtree(out, ignore_errors=True)
         os.mkdir(out)

@@ -14,7 +14,7 @@ import sys
 RANK = {
     "": 0, "merl": 1, "model/math": 2, "model/robust": 3, "model/paper": 4, "model/spectral": 4, "model": 5, "model/table": 6, "model/sample": 7,
     "codec": 8, "codec/paper": 9, "codec/spectral": 9, "archive": 10, "render": 10, "tool": 12, "tool/build": 13, "tool/compare": 13, "tool/report_page": 13,
-    "tool/commands": 14, "bench": 15, "viewer": 16,
+    "tool/commands": 14, "bench": 15, "python": 15, "viewer": 16,
 }
 # The header by which neighbours enter a wing. What is not here is a set of tools, each header for itself.
 DOOR = {
@@ -32,7 +32,9 @@ def without_comments(text):
 
 
 def sources(src):
-    for folder, _, names in os.walk(src):
+    for folder, inside, names in os.walk(src):
+        if folder == os.path.join(src, "python"):
+            inside[:] = [name for name in inside if name == "brdfpack"]  # without what a build leaves
         for name in sorted(names):
             if name.endswith((".c", ".h")):
                 path = os.path.join(folder, name)
@@ -134,6 +136,16 @@ def map_check(src, files):
         yield f"src/README.md names {word}, which is not there"
 
 
+def manual_check(src, files):
+    """The manual's table of what each command replaces has a row for each."""
+    with open(os.path.join(src, "tool/brdfpack.1"), encoding="utf-8") as file:
+        table = file.read().split(".TS\n")[1].split(".TE\n")[0]
+    for path in files:
+        command = re.fullmatch(r"tool/commands/cmd_(\w+)\.c", path)
+        if command and not re.search(rf"^{command[1]}\t", table, re.M):
+            yield f"{path}: the manual's table of files that are written has no row for it"
+
+
 def lengths_check(files):
     for path, text in files.items():
         lines = text.count("\n")
@@ -149,6 +161,7 @@ def main():
     for check in (arrows_check, circles_check, declarations_check, circles_of_calls_check, lengths_check):
         breaks += check(files)
     breaks += map_check(src, files)
+    breaks += manual_check(src, files)
     for line in breaks:
         print(line)
     print(f"{len(files)} files, {len(breaks)} breaks of the plan")

@@ -48,5 +48,44 @@ needed=$(readelf -d "$scratch/usr/lib/libbrdfpack.so" | sed -n 's/.*NEEDED.*\[\(
 [ -z "$needed" ] || { echo "libbrdfpack needs $needed"; exit 1; }
 readelf -d "$scratch/usr/lib/libbrdfpack.so" | grep -q "SONAME.*libbrdfpack.so.0"
 
+# CMake finds it, also after the tree has moved
+if command -v cmake >/dev/null; then
+	mkdir "$scratch/cmake"
+	cp tests/consumer.c "$scratch/cmake"
+	cat >"$scratch/cmake/CMakeLists.txt" <<-'END'
+		cmake_minimum_required(VERSION 3.16)
+		project(consumer C)
+		find_package(brdfpack 0.2 REQUIRED)
+		foreach(kind brdfpack static reader)
+			add_executable(with_${kind} consumer.c)
+			target_link_libraries(with_${kind} brdfpack::${kind})
+		endforeach()
+	END
+	cp -r "$scratch/usr" "$scratch/moved"
+	for place in usr moved; do
+		cmake -S "$scratch/cmake" -B "$scratch/cmake-$place" -DCMAKE_PREFIX_PATH="$scratch/$place" >"$scratch/log" || { cat "$scratch/log"; exit 1; }
+		cmake --build "$scratch/cmake-$place" >"$scratch/log" || { cat "$scratch/log"; exit 1; }
+		for kind in brdfpack static reader; do
+			[ "$(env -u LD_LIBRARY_PATH "$scratch/cmake-$place/with_$kind" "$archive")" = "$count" ]
+		done
+	done
+	! grep -r "$scratch/usr" "$scratch/cmake-moved" >/dev/null
+	sed -i 's/brdfpack 0.2/brdfpack 0.1/' "$scratch/cmake/CMakeLists.txt"
+	if cmake -S "$scratch/cmake" -B "$scratch/cmake-old" -DCMAKE_PREFIX_PATH="$scratch/usr" >/dev/null 2>&1; then exit 1; fi
+fi
+
+# completions say what the program's help says
+completed() { # completed WORD...: what bash offers for the last of them
+	PATH=$scratch/usr/bin:$PATH bash -c '. "$1/share/bash-completion/completions/brdfpack"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _brdfpack; printf "%s\n" "${COMPREPLY[@]}"' \
+		bash "$scratch/usr" brdfpack "$@"
+}
+[ "$(completed v)" = verify ]
+[ "$(completed build --ma | sort | tr '\n' ' ')" = "--manifest --max-error " ]
+[ "$(completed list -h)" = -h ]
+[ "$(completed extract "$archive" wine)" = wine-velvet ]
+[ "$(completed "" | wc -l)" -ge 14 ]
+if command -v zsh >/dev/null; then zsh -n scripts/completions/_brdfpack; fi
+if command -v fish >/dev/null; then fish --no-execute scripts/completions/brdfpack.fish; fi
+
 "${make[@]}" uninstall "PREFIX=$scratch/usr" >/dev/null
 [ -z "$(find "$scratch/usr" ! -type d)" ]

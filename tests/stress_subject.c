@@ -60,7 +60,7 @@ static void through_file(const struct packed_table *packed, bool plain, const ui
 	char path[] = "/tmp/brdfpack-stress-XXXXXX";
 	const int fd = mkstemp(path);
 	if (fd < 0 || close(fd) != 0 ||
-	    lattice_write_path(path, &packed->table, below, plain ? NULL : packed->record, plain ? 0 : packed->record_bytes, NULL) != BP_OK ||
+	    lattice_write_path(path, OUTPUT_REPLACE, &packed->table, below, plain ? NULL : packed->record, plain ? 0 : packed->record_bytes, NULL) != BP_OK ||
 	    lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = carried}, out, NULL) != BP_OK || unlink(path) != 0) {
 		fprintf(stderr, "%s: cannot be extracted by way of %s\n", packed->head.name, path);
 		exit(1);

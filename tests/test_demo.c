@@ -189,7 +189,7 @@ static void dark_readings_come_out_negative_and_are_saved_so(void **state)
 		negative += noisy.rgb[0][n] < 0 && noisy.rgb[0][n] > -1e-4;
 	assert_true(negative > 0);
 	close(mkstemp(path));
-	assert_int_equal(lattice_save_path(path, &noisy, NULL), BP_OK);
+	assert_int_equal(lattice_save_path(path, OUTPUT_REPLACE, &noisy, NULL), BP_OK);
 	assert_int_equal(lattice_read_path(path, &(struct merl_reading){.any_dims = true}, &read, NULL), BP_OK);
 	assert_int_equal(noisy.valid_count, read.valid_count);
 	assert_memory_equal(noisy.valid, read.valid, lattice_cells(SMALL));

@@ -30,9 +30,9 @@ static void a_label_names_container_and_member(void **state)
 {
 	(void)state;
 	char label[ITEM_LABEL_BYTES], path[] = "a.zip", member[] = "x/gold.binary";
-	item_label(&(struct item){.source = {.path = path}}, label);
+	item_label(&(struct source_item){.path = path}, label);
 	assert_string_equal(label, "a.zip");
-	item_label(&(struct item){.source = {.path = path, .member = member}}, label);
+	item_label(&(struct source_item){.path = path, .member = member}, label);
 	assert_string_equal(label, "a.zip: x/gold.binary");
 }
 

@@ -84,6 +84,34 @@ static void entries_are_found_by_name(void **state)
 	manifest_free(&manifest);
 }
 
+static void names_of_measured_files_stand_for_their_materials(void **state)
+{
+	(void)state;
+	struct manifest manifest;
+	assert_int_equal(parse("\xEF\xBB\xBFnickel.binary\nmerl/brdfs/gold-paint.BINARY\n./x.binary.gz\nbrass\n", &manifest), BP_OK);
+	assert_string_equal(manifest.entries[0].name, "brass");
+	assert_string_equal(manifest.entries[1].name, "gold-paint");
+	assert_string_equal(manifest.entries[2].name, "nickel");
+	assert_string_equal(manifest.entries[3].name, "x");
+	manifest_free(&manifest);
+	refuse("x\nfolder/x.binary\n", "line 2: 'x' stands in line 1 already");
+	assert_int_equal(parse_bytes("\xFF\xFE" "a\0", 4, &manifest), BP_ERROR_BAD_INPUT);
+	assert_string_equal(error.message, "this is UTF-16; save it as UTF-8");
+}
+
+static void another_unicode_form_is_noted(void **state)
+{
+	(void)state;
+	struct manifest manifest;
+	assert_int_equal(parse("gru\xCC\x88n\nblue\nh\xC3\xA4utchen\n", &manifest), BP_OK);
+	manifest_note_unlisted(&manifest, "gr\xC3\xBCn");
+	manifest_note_unlisted(&manifest, "blau");
+	assert_true(manifest_find(&manifest, "gru\xCC\x88n")->other_form);
+	assert_false(manifest_find(&manifest, "h\xC3\xA4utchen")->other_form);
+	assert_false(manifest_find(&manifest, "blue")->other_form);
+	manifest_free(&manifest);
+}
+
 static void errors_name_the_line(void **state)
 {
 	(void)state;
@@ -149,6 +177,8 @@ int main(void)
 		cmocka_unit_test(a_table_without_a_header_is_name_bytes_sha256),
 		cmocka_unit_test(a_header_names_the_columns_and_others_are_ignored),
 		cmocka_unit_test(entries_are_found_by_name),
+		cmocka_unit_test(names_of_measured_files_stand_for_their_materials),
+		cmocka_unit_test(another_unicode_form_is_noted),
 		cmocka_unit_test(errors_name_the_line),
 		cmocka_unit_test(a_file_with_nul_bytes_is_refused),
 		cmocka_unit_test(thousands_of_columns_do_no_harm),

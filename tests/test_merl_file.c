@@ -266,7 +266,7 @@ static void a_written_table_is_laid_out_byte_for_byte_and_reads_back(void **stat
 			table.rgb[c][n] = (float)(n + 1) * (float)(c + 1);
 	below[3] = below[139] = 1;
 	put_file(in_folder("out.binary"), "older", 5);
-	assert_int_equal(lattice_write_path(in_folder("out.binary"), &table, below, NULL, 0, NULL), BP_OK);
+	assert_int_equal(lattice_write_path(in_folder("out.binary"), OUTPUT_REPLACE, &table, below, NULL, 0, NULL), BP_OK);
 	unsigned char bytes[12 + 24 * 140 + 1];
 	FILE *file = fopen(in_folder("out.binary"), "rb");
 	assert_int_equal(fread(bytes, 1, sizeof bytes, file), sizeof bytes - 1);
@@ -299,7 +299,7 @@ static void values_beyond_the_range_of_the_file_stay_finite(void **state)
 	for (int c = 0; c < 3; c++)
 		for (size_t n = 0; n < 64; n++)
 			table.rgb[c][n] = 100;
-	assert_int_equal(lattice_write_path(in_folder("huge.binary"), &table, below, NULL, 0, NULL), BP_OK);
+	assert_int_equal(lattice_write_path(in_folder("huge.binary"), OUTPUT_REPLACE, &table, below, NULL, 0, NULL), BP_OK);
 	assert_int_equal(lattice_read_path(in_folder("huge.binary"), &(struct merl_reading){.any_dims = true}, &lattice, NULL), BP_OK);
 	assert_int_equal(lattice.valid_count, 64);
 	lattice_free(&lattice);
@@ -314,10 +314,10 @@ static void a_failed_write_names_the_path_and_leaves_nothing(void **state)
 	uint8_t below[64] = {0};
 	bp_error error;
 	assert_int_equal(expansion_alloc((struct lattice_dims){4, 4, 4}, &table, NULL), BP_OK);
-	assert_int_equal(lattice_write_path(in_folder("none/out.binary"), &table, below, NULL, 0, &error), BP_ERROR_IO);
+	assert_int_equal(lattice_write_path(in_folder("none/out.binary"), OUTPUT_REPLACE, &table, below, NULL, 0, &error), BP_ERROR_IO);
 	assert_non_null(strstr(error.message, in_folder("none/out.binary")));
 	assert_int_equal(mkdir(in_folder("taken"), 0700), 0); /* a folder of that name cannot be replaced */
-	assert_int_equal(lattice_write_path(in_folder("taken"), &table, below, NULL, 0, &error), BP_ERROR_IO);
+	assert_int_equal(lattice_write_path(in_folder("taken"), OUTPUT_REPLACE, &table, below, NULL, 0, &error), BP_ERROR_IO);
 	assert_int_equal(rmdir(in_folder("taken")), 0);
 	expansion_free(&table);
 }

@@ -85,7 +85,7 @@ static void extracted(const struct packed *packed, const uint8_t *carried, size_
 	const int fd = mkstemp(path);
 	assert_true(fd >= 0);
 	close(fd);
-	assert_int_equal(lattice_write_path(path, &packed->table, packed->below, carried, bytes, NULL), BP_OK);
+	assert_int_equal(lattice_write_path(path, OUTPUT_REPLACE, &packed->table, packed->below, carried, bytes, NULL), BP_OK);
 	assert_int_equal(lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = &out->carried}, &out->lattice, NULL), BP_OK);
 	unlink(path);
 }

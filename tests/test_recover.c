@@ -139,7 +139,7 @@ static void of_two_archives_in_one_file_each_material_is_saved_once(void **state
 	free(twice);
 }
 
-static void what_holds_no_record_or_would_be_overwritten_is_refused(void **state)
+static void what_holds_no_record_is_refused_and_the_damaged_one_may_be_replaced(void **state)
 {
 	struct recovery recovery;
 	(void)state;
@@ -150,7 +150,8 @@ static void what_holds_no_record_or_would_be_overwritten_is_refused(void **state
 	assert_int_equal(archive_recover(fixture_path("text"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL), BP_ERROR_NOT_FOUND);
 	assert_int_equal(archive_recover(fixture_path("missing"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL), BP_ERROR_IO);
 	archive_make(fixture_path("whole.bpk"));
-	assert_int_equal(archive_recover(fixture_path("whole.bpk"), fixture_path("whole.bpk"), NULL, NULL, &recovery, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(archive_recover(fixture_path("whole.bpk"), fixture_path("whole.bpk"), NULL, NULL, &recovery, NULL), BP_OK);
+	assert_int_equal(recovery.lost, 0);
 }
 
 int main(void)
@@ -159,7 +160,7 @@ int main(void)
 		cmocka_unit_test(holes_cost_only_the_materials_they_hit),
 		cmocka_unit_test(a_lost_header_and_index_do_not_matter),
 		cmocka_unit_test(of_two_archives_in_one_file_each_material_is_saved_once),
-		cmocka_unit_test(what_holds_no_record_or_would_be_overwritten_is_refused),
+		cmocka_unit_test(what_holds_no_record_is_refused_and_the_damaged_one_may_be_replaced),
 	};
 	return cmocka_run_group_tests(tests, fixture_folder_make, fixture_folder_remove);
 }

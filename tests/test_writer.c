@@ -49,7 +49,6 @@ static void nothing_stands_under_the_name_before_commit(void **state)
 	assert_int_equal(archive_writer_open(path, &writer, NULL), BP_OK);
 	assert_int_equal(archive_writer_add(writer, record, bytes, NULL), BP_OK);
 	assert_int_equal(access(path, F_OK), -1);
-	assert_int_equal(access(archive_writer_temporary(writer), F_OK), 0);
 	archive_writer_discard(writer);
 	assert_int_equal(files_in_folder(), 0);
 	archive_writer_discard(NULL);
@@ -142,35 +141,6 @@ static void a_full_disk_leaves_the_old_archive_untouched(void **state)
 	unlink(path);
 }
 
-static void what_a_killed_writer_left_goes_with_the_next_run_but_not_a_living_ones(void **state)
-{
-	const char *path = fixture_path("out.bpk");
-	int ready[2], result;
-	char byte;
-	pid_t child;
-	(void)state;
-	assert_int_equal(pipe(ready), 0);
-	child = fork();
-	if (child == 0) {
-		struct archive_writer *writer = NULL;
-		if (archive_writer_open(path, &writer, NULL) == BP_OK && write(ready[1], "x", 1) == 1)
-			pause();
-		_exit(1);
-	}
-	assert_int_equal(read(ready[0], &byte, 1), 1);
-	assert_int_equal(files_in_folder(), 1);
-	fixture_archive(path, NAMES, 3, 4); /* the other lives: its file stays */
-	assert_int_equal(files_in_folder(), 2);
-	kill(child, SIGKILL);
-	assert_int_equal(waitpid(child, &result, 0), child);
-	assert_int_equal(files_in_folder(), 2);
-	fixture_archive(path, NAMES, 3, 4);
-	assert_int_equal(files_in_folder(), 1);
-	close(ready[0]);
-	close(ready[1]);
-	unlink(path);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -180,7 +150,6 @@ int main(void)
 		cmocka_unit_test(an_output_that_cannot_be_made_is_named),
 		cmocka_unit_test(a_link_is_followed),
 		cmocka_unit_test(a_full_disk_leaves_the_old_archive_untouched),
-		cmocka_unit_test(what_a_killed_writer_left_goes_with_the_next_run_but_not_a_living_ones),
 	};
 	return cmocka_run_group_tests(tests, fixture_folder_make, fixture_folder_remove);
 }

@@ -13,8 +13,10 @@ for k in $(seq "$n"); do
 		missing=$((missing + 1))
 	fi
 done
-refused=$(cat "$folder"/*.json | grep -c '"error": ' || true)
-cat "$folder"/*.json | grep -h '"error": ' | sed 's/^/refused: /'
+# every shard tells of an input that cannot be read
+refusals=$(cat "$folder"/*.json | grep -h '"error": ' | sort -u)
+refused=$(grep -c . <<<"$refusals" || true)
+[ "$refused" = 0 ] || sed 's/^/refused: /' <<<"$refusals"
 if [ "$missing" != 0 ]; then
 	echo "$missing of $n shards are missing; $output: not written. Submit again: only what is missing is made"
 	exit 1

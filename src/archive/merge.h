@@ -2,7 +2,8 @@
  * merge.h: records from archive to archive, as they are: subset, merge, and reuse by a later build.
  *
  * Sections are copied byte for byte; what is read is checked. The result depends on nothing but its inputs, and
- * appears under its name only when it is whole (writer.h), so it may replace one of its own inputs.
+ * appears under its name only when it is whole (writer.h), so it may replace one of its own inputs. BP_OK may come with a
+ * warning in *error, as from archive_writer_commit.
  */
 #ifndef ARCHIVE_MERGE_H
 #define ARCHIVE_MERGE_H

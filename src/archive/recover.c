@@ -229,17 +229,15 @@ static bp_status records_save(struct scan *scan, struct archive_writer *writer, 
 	return BP_OK;
 }
 
-static bp_status scan_open(struct scan *scan, const char *damaged, const char *path, bp_error *error)
+static bp_status scan_open(struct scan *scan, const char *damaged, bp_error *error)
 {
-	struct stat found, target;
+	struct stat found;
 	scan->path = damaged;
 	scan->fd = open(damaged, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
 	if (scan->fd < 0 || fstat(scan->fd, &found) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot open: %s", damaged, strerror(errno));
 	if (!S_ISREG(found.st_mode))
 		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "%s: not a regular file, so not a brdfpack archive", damaged);
-	if (stat(path, &target) == 0 && target.st_dev == found.st_dev && target.st_ino == found.st_ino)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: would be overwritten; choose another name for the result", path);
 	scan->file_bytes = (uint64_t)found.st_size;
 	return BP_OK;
 }
@@ -256,7 +254,7 @@ bp_status archive_recover(const char *damaged, const char *path, recover_report_
 		return error_memory(error, sizeof *scan);
 	scan->report = report;
 	scan->user = user;
-	status = scan_open(scan, damaged, path, error);
+	status = scan_open(scan, damaged, error);
 	if (!status)
 		status = file_scan(scan, error);
 	if (status)

@@ -10,12 +10,12 @@
 #include "codec/record.h"
 #include "error.h"
 #include "index.h"
-#include "temporary.h"
+#include "output_file.h"
 
 enum { BUFFER_BYTES = 1 << 18 };
 
 struct archive_writer {
-	struct temporary_file file;
+	struct output_file file;
 	bool in_memory;            /* then the bytes go to: */
 	struct byte_buffer memory;
 	struct index_builder index;
@@ -31,17 +31,7 @@ static bp_status bytes_put(struct archive_writer *writer, const uint8_t *bytes, 
 		write_bytes(&writer->memory, bytes, count);
 		return writer->memory.failed ? error_memory(error, writer->memory.count + count) : BP_OK;
 	}
-	while (count) {
-		ssize_t put = write(writer->file.fd, bytes, count);
-		if (put < 0 && errno == EINTR)
-			continue;
-		if (put <= 0)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot write: %s", writer->file.target,
-			                 put < 0 ? strerror(errno) : "no space");
-		bytes += put;
-		count -= (size_t)put;
-	}
-	return BP_OK;
+	return output_file_write(&writer->file, bytes, count, error);
 }
 
 static bp_status buffer_flush(struct archive_writer *writer, bp_error *error)
@@ -70,17 +60,20 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 /* path NULL: in memory */
 static bp_status writer_open(const char *path, struct archive_writer **out, bp_error *error)
 {
-	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES];
+	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES] = OUTPUT_UNFINISHED;
 	struct archive_writer *writer = calloc(1, sizeof *writer);
 	bp_status status = BP_OK;
 	if (!writer)
 		return error_memory(error, sizeof *writer);
 	writer->file.fd = -1;
 	writer->in_memory = !path;
-	if (path)
-		status = temporary_create(path, &writer->file, error);
-	if (!status)
-		status = writer_append(writer, header_to_come, sizeof header_to_come, error);
+	if (path) {
+		output_file_sweep(path, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES);
+		status = output_file_open(path, OUTPUT_REPLACE, &writer->file, error);
+	}
+	if (!status) /* at once, so that the next writer knows it for ours if this one is killed */
+		status = bytes_put(writer, header_to_come, sizeof header_to_come, error);
+	writer->file_bytes = sizeof header_to_come;
 	if (status) {
 		archive_writer_discard(writer);
 		return status;
@@ -97,11 +90,6 @@ bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_
 bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error)
 {
 	return writer_open(NULL, out, error);
-}
-
-const char *archive_writer_temporary(const struct archive_writer *writer)
-{
-	return writer->file.path;
 }
 
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
@@ -157,7 +145,7 @@ bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)
 {
 	bp_status status = writer_end(writer, error);
 	if (!status)
-		status = temporary_commit(&writer->file, error);
+		status = output_file_commit_synced(&writer->file, error);
 	archive_writer_discard(writer);
 	return status;
 }
@@ -178,7 +166,7 @@ void archive_writer_discard(struct archive_writer *writer)
 {
 	if (!writer)
 		return;
-	temporary_discard(&writer->file);
+	output_file_discard(&writer->file);
 	byte_buffer_free(&writer->memory);
 	index_builder_free(&writer->index);
 	free(writer);

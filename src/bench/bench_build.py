@@ -84,7 +84,7 @@ def main():
             ("cat", ["cat"] + files, count),
             ("build -j1", build + ["-j1", "-o", archive] + files, count),
             ("build -j2", build + ["-j2", "-o", archive] + files, count),
-            ("extract", [TOOL, "extract", "-C", out, archive], count),
+            ("extract", [TOOL, "extract", "--force", "-C", out, archive], count),
             ("list", [TOOL, "list", archive], count),
             ("list of 100", [TOOL, "list", hundred_archive(scratch)], 100),
             ("verify", [TOOL, "verify", archive], count),

@@ -24,7 +24,7 @@ static bp_status layer_expand(const struct record_head *head, const uint8_t *rec
 
 /* Fills in the figures of every layer. */
 static bp_status layers_measure(struct record_head *head, const uint8_t *record, const struct lattice *lattice,
-                                const struct model *decoded, bp_error *error)
+                                const struct model *decoded, const struct watch *watch, bp_error *error)
 {
 	/* A large lattice's layers one by one: their tables would take more memory than the pass is worth. */
 	const uint32_t at_once = lattice_cells(head->dims) <= MEASURED_CELLS_MAX ? MEASURED_AT_ONCE : 1;
@@ -35,7 +35,8 @@ static bp_status layers_measure(struct record_head *head, const uint8_t *record,
 	for (uint32_t l = 0; !status && l < head->layer_count; l += at_once) {
 		uint32_t count = 0;
 		while (!status && count < at_once && l + count < head->layer_count) {
-			if (!tables[count].block)
+			status = watch_tell(watch, 0.8 + 0.2 * (l + count) / head->layer_count, error);
+			if (!status && !tables[count].block)
 				status = expansion_alloc(head->dims, &tables[count], error);
 			if (!status)
 				status = layer_expand(head, record, decoded, l + count, &tables[count], error);
@@ -52,14 +53,14 @@ static bp_status layers_measure(struct record_head *head, const uint8_t *record,
 }
 
 bp_status record_measure(struct record_head *head, const struct section_list *sections, const struct lattice *lattice,
-                         const struct model *decoded, uint8_t **record, size_t *record_bytes, bp_error *error)
+                         const struct model *decoded, const struct watch *watch, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	uint8_t *unmeasured = NULL;
 	/* Once to have the bytes that are decoded, once more with what was measured on them. */
 	bp_status status = record_write(head, sections, &unmeasured, record_bytes, error);
 	const enum stage before = stage_enter(STAGE_MEASURE);
 	if (!status)
-		status = layers_measure(head, unmeasured, lattice, decoded, error);
+		status = layers_measure(head, unmeasured, lattice, decoded, watch, error);
 	free(unmeasured);
 	stage_enter(before);
 	return status ? status : record_write(head, sections, record, record_bytes, error);

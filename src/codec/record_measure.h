@@ -9,8 +9,9 @@
 /*
  * Head and sections -> record (record_write), with the figures of every layer against the lattice; *record is malloc'ed. `decoded`:
  * the model that they decode to, where the caller has it, or NULL.
+ * `watch` is told before every layer.
  */
 bp_status record_measure(struct record_head *head, const struct section_list *sections, const struct lattice *lattice,
-                         const struct model *decoded, uint8_t **record, size_t *record_bytes, bp_error *error);
+                         const struct model *decoded, const struct watch *watch, uint8_t **record, size_t *record_bytes, bp_error *error);
 
 #endif

@@ -59,10 +59,7 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 	                                error);
 	if (status)
 		goto out;
-	status = watch_tell(request.options->watch, 0.8, error);
-	if (status)
-		goto out;
-	status = record_measure(&packed.head, &sections, packing->lattice, decoded, &packed.record, &packed.bytes, error);
+	status = record_measure(&packed.head, &sections, packing->lattice, decoded, request.options->watch, &packed.record, &packed.bytes, error);
 	if (!status && packed.bytes > record_bytes_max) {
 		free(packed.record);
 		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the record takes %zu bytes, the budget is %u", packed.bytes,

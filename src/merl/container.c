@@ -5,13 +5,15 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "container_fault.h"
 #include "error.h"
+#include "source_kind.h"
 
 enum { BLOCK_BYTES = 1 << 18, FAILURES_MAX = 1000 };
 
@@ -26,7 +28,9 @@ struct container {
 	bool pending;      /* the first entry, read while opening */
 	bool finished;
 	unsigned failures; /* entries that could not be read; a limit keeps hostile files from going on for ever */
-	size_t ignored;
+	size_t members, ignored;
+	const char *remark;
+	char fault[512]; /* of the current member */
 	locale_t locale;
 };
 
@@ -65,6 +69,16 @@ static char *raw_member_name(const char *path)
 	return dot && dot != base ? strndup(base, (size_t)(dot - base)) : strdup(base);
 }
 
+/* A format that knows no such option answers ARCHIVE_WARN or ARCHIVE_FAILED; the others take it. */
+static void options_set(struct archive *archive, const char *charset)
+{
+	archive_read_set_format_option(archive, "tar", "read_concatenated_archives", "1");
+	if (charset) {
+		archive_read_set_format_option(archive, "tar", "hdrcharset", charset);
+		archive_read_set_format_option(archive, "zip", "hdrcharset", charset);
+	}
+}
+
 static bool formats_choose(struct archive *archive, enum container_order order)
 {
 	if (archive_read_support_format_tar(archive) != ARCHIVE_OK)
@@ -79,6 +93,15 @@ static bool formats_choose(struct archive *archive, enum container_order order)
 	archive_read_support_filter_zstd(archive);
 	archive_read_support_filter_compress(archive);
 	return archive_read_support_format_zip(archive) == ARCHIVE_OK && archive_read_support_format_raw(archive) == ARCHIVE_OK;
+}
+
+/* At the end of a tar, or of a compressed file: does the file end here too? A zip has its directory there, and is looked at otherwise. */
+static void end_look(struct container *container)
+{
+	const int format = archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK;
+	const la_int64_t read = archive_filter_bytes(container->archive, -1);
+	if (!container->remark && (format == ARCHIVE_FORMAT_TAR || format == ARCHIVE_FORMAT_RAW) && read >= 0)
+		container->remark = container_rest(container->fd, read);
 }
 
 /* The next entry of any kind; *more = false at the end. After an error the next call goes on, unless it was fatal. */
@@ -102,8 +125,10 @@ static bp_status entry_next(struct container *container, bool *more, bp_error *e
 	container->failures += answer == ARCHIVE_FAILED;
 	if (answer == ARCHIVE_EOF || answer == ARCHIVE_FATAL || container->failures > FAILURES_MAX)
 		container->finished = true;
-	if (answer == ARCHIVE_EOF)
+	if (answer == ARCHIVE_EOF) {
+		end_look(container);
 		return BP_OK;
+	}
 	if (answer != ARCHIVE_OK && answer != ARCHIVE_WARN) {
 		container->next += answer != ARCHIVE_FATAL;
 		return refuse(container, "damaged", error);
@@ -117,7 +142,7 @@ static bp_status entry_next(struct container *container, bool *more, bp_error *e
 	return container->path ? BP_OK : error_memory(error, 256);
 }
 
-bp_status container_open(const char *path, enum container_order order, struct container **out, bp_error *error)
+bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out, bp_error *error)
 {
 	struct stat about;
 	bp_status status;
@@ -141,6 +166,7 @@ bp_status container_open(const char *path, enum container_order order, struct co
 		goto out;
 	}
 	const locale_t before = locale_enter(container);
+	options_set(container->archive, charset);
 	int answer = archive_read_open_fd(container->archive, container->fd, BLOCK_BYTES);
 	if (answer == ARCHIVE_OK)
 		do
@@ -149,18 +175,24 @@ bp_status container_open(const char *path, enum container_order order, struct co
 	const bool raw = (archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_RAW;
 	const int filters = archive_filter_count(container->archive); /* one of them is the file itself */
 	status = BP_OK;
-	if (answer == ARCHIVE_EOF)
+	if (answer == ARCHIVE_EOF) {
 		container->finished = true;
-	else if (answer == ARCHIVE_OK || answer == ARCHIVE_WARN)
+		container->remark = container_emptiness(container->fd);
+	}
+	if (answer == ARCHIVE_OK || answer == ARCHIVE_WARN)
 		container->pending = true;
-	else
+	else if (answer != ARCHIVE_EOF)
 		status = refuse(container, "not readable as tar or zip", error);
 	locale_leave(before);
 	/* Any bytes at all pass for "raw" and for an empty tar: only a compressed file may be the one, and zeros the other. */
 	if (status != BP_OK && order == CONTAINER_INDEXED)
 		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "neither a plain tar nor a zip with a directory");
 	else if (status == BP_OK && raw && filters < 2)
-		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "neither tar nor zip");
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "neither tar nor zip");
+	if (status != BP_OK && status != BP_ERROR_UNSUPPORTED && status != BP_ERROR_MEMORY && container_fault(container->fd))
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", container_fault(container->fd));
+	else if (status == BP_OK && !container->remark && (archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_ZIP)
+		container->remark = container_fault(container->fd);
 	if (status == BP_OK && raw && !(container->raw_name = raw_member_name(path)))
 		status = error_memory(error, 256);
 out:
@@ -171,17 +203,47 @@ out:
 	return status;
 }
 
+/* Tables, and containers that may hold some; what has a name that cannot be read may be either. */
 static bool entry_counts(struct container *container)
 {
-	static const char suffix[] = ".binary";
-	const char *slash = strrchr(container->path, '/'), *base = slash ? slash + 1 : container->path;
-	const size_t bytes = strlen(base);
-	const bool regular = container->raw_name || archive_entry_filetype(container->entry) == AE_IFREG;
-	const bool counts = regular && base[0] != '.' && bytes > sizeof suffix - 1 &&
-	                    strcasecmp(base + bytes - (sizeof suffix - 1), suffix) == 0;
-	if (!counts && archive_entry_filetype(container->entry) != AE_IFDIR)
-		container->ignored++;
+	const bool folder = !container->raw_name && archive_entry_filetype(container->entry) == AE_IFDIR;
+	const bool counts = !folder && (!container->path[0] || source_kind_by_name(container->path) != SOURCE_KIND_OTHER);
+	container->members += counts;
+	container->ignored += !counts && !folder;
 	return counts;
+}
+
+static const char *text_or(const char *text, const char *other)
+{
+	return text && *text ? text : other;
+}
+
+/* Why the current entry cannot be packed, or NULL. */
+static const char *entry_fault(struct container *container)
+{
+	struct archive_entry *entry = container->entry;
+	const char *hard = archive_entry_hardlink_utf8(entry) ? archive_entry_hardlink_utf8(entry) : archive_entry_hardlink(entry);
+	const bool has_bytes = archive_entry_size_is_set(entry) && archive_entry_size(entry) > 0;
+	if (!container->path[0])
+		return "its name cannot be read in this character set; name another with --charset";
+	if (archive_entry_is_data_encrypted(entry) || archive_entry_is_metadata_encrypted(entry))
+		return "encrypted; unpack it with its password first";
+	if (source_kind_by_name(container->path) != SOURCE_KIND_MERL)
+		return container->raw_name ? "what is compressed in it is no tar" : "a container within a container, which is not read; unpack the outer one first";
+	if (container->raw_name)
+		return NULL;
+	if (hard && !has_bytes) {
+		snprintf(container->fault, sizeof container->fault, "a hard link to %s, stored without its bytes; store the file itself (tar --hard-dereference)",
+		         text_or(hard, "another member"));
+		return container->fault;
+	}
+	if (archive_entry_filetype(entry) == AE_IFLNK) {
+		const char *soft = archive_entry_symlink_utf8(entry) ? archive_entry_symlink_utf8(entry) : archive_entry_symlink(entry);
+		snprintf(container->fault, sizeof container->fault, "a symbolic link to %s, stored without its bytes; store the file itself (tar --dereference, zip without -y)",
+		         text_or(soft, "another file"));
+		return container->fault;
+	}
+	return hard || archive_entry_filetype(entry) == AE_IFREG ? NULL : "a FIFO or a device, not a file";
 }
 
 bp_status container_next(struct container *container, struct container_member *member, bool *more, bp_error *error)
@@ -191,19 +253,24 @@ bp_status container_next(struct container *container, struct container_member *m
 	do
 		status = entry_next(container, more, error);
 	while (status == BP_OK && *more && !entry_counts(container));
+	if (status == BP_OK && *more) {
+		member->path = container->path;
+		member->ordinal = container->next - 1;
+		member->bytes = archive_entry_size_is_set(container->entry) ? (uint64_t)archive_entry_size(container->entry) : UINT64_MAX;
+		member->fault = entry_fault(container);
+	}
 	locale_leave(before);
-	if (status != BP_OK || !*more)
-		return status;
-	struct archive_entry *entry = container->entry;
-	if (archive_entry_is_data_encrypted(entry) || archive_entry_is_metadata_encrypted(entry))
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "member %s: encrypted; unpack it with its password first", container->path);
-	if (!container->raw_name && archive_entry_hardlink(entry))
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "member %s: a hard link, whose bytes are stored elsewhere in the archive",
-		                 container->path);
-	member->path = container->path;
-	member->ordinal = container->next - 1;
-	member->bytes = archive_entry_size_is_set(entry) ? (uint64_t)archive_entry_size(entry) : UINT64_MAX;
-	return BP_OK;
+	return status;
+}
+
+const char *container_remark(const struct container *container)
+{
+	return container->remark;
+}
+
+size_t container_members(const struct container *container)
+{
+	return container->members;
 }
 
 bool container_ahead(const struct container *container, uint32_t ordinal)

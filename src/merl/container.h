@@ -2,12 +2,15 @@
  * container.h: MERL files inside a tar or zip, plain or compressed, read through libarchive
  * without unpacking. Part of the tool, not of the library.
  *
- * Members that count are regular files named *.binary (in either case), not hidden ("._x.binary" is
- * no table); others are passed over and counted. A single compressed MERL file (x.binary.gz) is a
+ * Members that count are named *.binary (in either case), or like a container, and not hidden ("._x.binary" is
+ * no table); others are passed over and counted. Of these, what is no file with bytes of its own (a link, a device), encrypted, or
+ * a container itself has a fault. Tars that were joined, one behind the other, are read as one. A single compressed MERL file (x.binary.gz) is a
  * container of one member. Messages name the member but not the container: the caller puts that in front.
  */
 #ifndef MERL_CONTAINER_H
 #define MERL_CONTAINER_H
+
+#include <stdbool.h>
 
 #include "merl_file.h"
 
@@ -17,6 +20,7 @@ struct container_member {
 	const char *path;  /* inside the container, as stored; valid until the next call */
 	uint32_t ordinal;  /* among all entries of the container, from 0 */
 	uint64_t bytes;    /* UINT64_MAX where the format does not say */
+	const char *fault; /* why it cannot be packed, with the remedy; NULL: nothing is known against it. Valid as long as the path */
 };
 
 enum container_order {
@@ -26,13 +30,18 @@ enum container_order {
 
 /*
  * Opens a regular file. BP_ERROR_UNSUPPORTED: not a container that can be read in that order (try
- * CONTAINER_SEQUENTIAL after CONTAINER_INDEXED); BP_ERROR_BAD_INPUT: damaged; BP_ERROR_IO.
+ * CONTAINER_SEQUENTIAL after CONTAINER_INDEXED); BP_ERROR_BAD_INPUT: damaged, or no container at all, and what it is then; BP_ERROR_IO.
+ * charset: of members' names that do not say that they are UTF-8, as iconv calls it; NULL: none is known, and such names stay as
+ * they are.
  */
-bp_status container_open(const char *path, enum container_order order, struct container **out, bp_error *error);
+bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out, bp_error *error);
+
+/* What is wrong with the container as a whole although its members can be read, known when its end has been reached; NULL: nothing. */
+const char *container_remark(const struct container *container);
 
 /*
  * Moves on to the next member that counts; *more = false at the end. Errors (BP_ERROR_BAD_INPUT:
- * damaged, encrypted, a hard link) concern one member: call again to go on; where that is not
+ * damaged) concern one member: call again to go on; where that is not
  * possible, the next call finds the end.
  */
 bp_status container_next(struct container *container, struct container_member *member, bool *more, bp_error *error);
@@ -47,6 +56,9 @@ bool container_ahead(const struct container *container, uint32_t ordinal);
 
 /* A merl_read_fn for the current member; user is the struct container. */
 bp_status container_read(void *container, void *bytes, size_t capacity, size_t *read, bp_error *error);
+
+/* Members that counted so far. */
+size_t container_members(const struct container *container);
 
 /* Members passed over so far because they are no MERL files (folders do not count). */
 size_t container_ignored(const struct container *container);

@@ -191,12 +191,12 @@ out:
 /* Fills values[count], in the file's units, from cell `start` of a channel; called in file order. */
 typedef void chunk_fill_fn(void *user, int channel, size_t start, size_t count, double *values);
 
-static bp_status planes_write(const char *path, struct lattice_dims dims, chunk_fill_fn *fill, void *user, bp_error *error)
+static bp_status planes_write(const char *path, enum output_rule rule, struct lattice_dims dims, chunk_fill_fn *fill, void *user, bp_error *error)
 {
 	const size_t cells = lattice_cells(dims);
 	const int32_t header[3] = {(int32_t)dims.theta_h, (int32_t)dims.theta_d, (int32_t)dims.phi_d};
 	struct output_file file;
-	bp_status status = output_file_open(path, &file, error);
+	bp_status status = output_file_open(path, rule, &file, error);
 	if (status != BP_OK)
 		return status;
 	double *values = malloc(CHUNK_VALUES * sizeof *values);
@@ -248,13 +248,13 @@ static size_t marked(const uint8_t *mask, size_t cells)
 	return count;
 }
 
-bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, const uint8_t *carried,
-                             size_t carried_bytes, bp_error *error)
+bp_status lattice_write_path(const char *path, enum output_rule rule, const struct expansion *table, const uint8_t *below,
+                             const uint8_t *carried, size_t carried_bytes, bp_error *error)
 {
 	struct decoded decoded = {.table = table, .below = below};
 	if (carried && carried_fits(carried_bytes, 3 * marked(below, lattice_cells(table->dims))))
 		decoded.carried = (struct carried_writer){.bytes = carried, .count = carried_bytes};
-	return planes_write(path, table->dims, decoded_fill, &decoded, error);
+	return planes_write(path, rule, table->dims, decoded_fill, &decoded, error);
 }
 
 bool lattice_is_written(const struct lattice *lattice, const struct expansion *table, const uint8_t *below)
@@ -287,7 +287,7 @@ static void measured_fill(void *user, int channel, size_t start, size_t count, d
 	}
 }
 
-bp_status lattice_save_path(const char *path, const struct lattice *lattice, bp_error *error)
+bp_status lattice_save_path(const char *path, enum output_rule rule, const struct lattice *lattice, bp_error *error)
 {
-	return planes_write(path, lattice->dims, measured_fill, (void *)(uintptr_t)lattice, error);
+	return planes_write(path, rule, lattice->dims, measured_fill, (void *)(uintptr_t)lattice, error);
 }

@@ -7,6 +7,7 @@
 
 #include "carried.h"
 #include "lattice.h"
+#include "output_file.h"
 
 /* Bytes of a file with these extents: 12 + 24 * cells. MERL: 34,992,012. */
 uint64_t merl_file_bytes(struct lattice_dims dims);
@@ -39,10 +40,10 @@ bp_status lattice_read_path(const char *path, const struct merl_reading *reading
 /*
  * Writes a decoded table as a MERL file: unit * value / MERL_SCALE (DBL_MAX where that would overflow), but -1 where
  * below[cell]. These cells carry the `carried` bytes (carried.h; NULL: none) where they have the room, and are then
- * from -1.0625 to -1. An older file is replaced whole or not at all (output_file.h); errors name the path.
+ * from -1.0625 to -1. What happens to a file that is there, the rule says (output_file.h); errors name the path.
  */
-bp_status lattice_write_path(const char *path, const struct expansion *table, const uint8_t *below, const uint8_t *carried,
-                             size_t carried_bytes, bp_error *error);
+bp_status lattice_write_path(const char *path, enum output_rule rule, const struct expansion *table, const uint8_t *below,
+                             const uint8_t *carried, size_t carried_bytes, bp_error *error);
 
 /* Whether the lattice, of the table's extents, is what reading such a file gives: the same cells valid, the same values (1/sr) to the bit. */
 bool lattice_is_written(const struct lattice *lattice, const struct expansion *table, const uint8_t *below);
@@ -51,6 +52,6 @@ bool lattice_is_written(const struct lattice *lattice, const struct expansion *t
  * Writes a lattice as a MERL file: the planes / MERL_SCALE, but -1 in every channel of a cell that is
  * not valid and negative in none.
  */
-bp_status lattice_save_path(const char *path, const struct lattice *lattice, bp_error *error);
+bp_status lattice_save_path(const char *path, enum output_rule rule, const struct lattice *lattice, bp_error *error);
 
 #endif

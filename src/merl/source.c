@@ -2,25 +2,15 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <search.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "name.h"
 #include "error.h"
-#include "source_kind.h"
+#include "source_names.h"
 
 enum { DEPTH_MAX = 1000 };
-
-void source_item_clear(struct source_item *item)
-{
-	free(item->name);
-	free(item->path);
-	free(item->member);
-	*item = (struct source_item){0};
-}
 
 static void notice(struct source_list *list, enum source_notice kind, const char *path, const char *reason)
 {
@@ -30,68 +20,25 @@ static void notice(struct source_list *list, enum source_notice kind, const char
 		list->options.notice(list->options.user, kind, path, reason);
 }
 
-/* Who has a name: where it was first seen, as a person would write it. */
-struct claim {
-	char *name, *where;
-};
-
-static int claim_compare(const void *a, const void *b)
+/* Tells of a material that cannot be packed. */
+static bp_status refuse(struct source_list *list, const char *name, const char *path, const char *member, const char *reason, bp_error *error)
 {
-	return strcmp(((const struct claim *)a)->name, ((const struct claim *)b)->name);
-}
-
-static void claim_free(void *claim)
-{
-	free(((struct claim *)claim)->name);
-	free(((struct claim *)claim)->where);
-	free(claim);
-}
-
-/* Checks a material's name and takes it; refuses illegal names and those that are taken. */
-static bp_status name_claim(struct source_list *list, const char *name, const char *path, const char *member, bp_error *error)
-{
-	char where[1024];
-	snprintf(where, sizeof where, "%s%s%s", path, member ? ": member " : "", member ? member : "");
-	const char *fault = name_fault(name, strlen(name));
-	if (fault)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: its stem cannot name a material: %s; rename the file", where, fault);
-	struct claim *claim = calloc(1, sizeof *claim);
-	if (!claim || !(claim->name = strdup(name)) || !(claim->where = strdup(where))) {
-		if (claim)
-			claim_free(claim);
-		return error_memory(error, sizeof *claim);
+	struct source_item item = {.name = source_text_shown(name), .path = strdup(path), .member = member ? source_text_shown(member) : NULL};
+	char *where = NULL;
+	bp_status status = BP_OK;
+	if (!item.name || !item.path || (member && !item.member) ||
+	    asprintf(&where, "%s%s%s", path, member ? ": " : "", member ? item.member : "") < 0) {
+		where = NULL;
+		status = error_memory(error, strlen(path));
+	} else if (list->options.refused) {
+		list->options.refused(list->options.user, &item, reason);
+	} else if (list->options.notice) {
+		list->options.notice(list->options.user, SOURCE_DAMAGED, where, reason);
 	}
-	struct claim **holder = tsearch(claim, &list->names, claim_compare);
-	if (holder && *holder == claim)
-		return BP_OK;
-	claim_free(claim);
-	if (!holder)
-		return error_memory(error, sizeof *claim);
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "two materials named %s: %.190s and %.190s; rename or leave out one", name,
-	                 (*holder)->where, where);
-}
-
-/* A material found at path (and member): its name is checked and claimed unless it is not wanted. */
-static bp_status material_take(struct source_list *list, const char *path, const char *member, struct source_item *out, bool *taken,
-                               bp_error *error)
-{
-	char name[SOURCE_STEM_BYTES];
-	source_stem(member ? member : path, name);
-	*taken = !list->options.wanted || list->options.wanted(list->options.user, name);
-	if (!*taken) {
-		list->unwanted_count++;
-		return BP_OK;
-	}
-	bp_status status = name_claim(list, name, path, member, error);
-	if (status != BP_OK)
-		return status;
-	struct source_item item = {.name = strdup(name), .path = strdup(path), .member = member ? strdup(member) : NULL};
-	if (!item.name || !item.path || (member && !item.member)) {
-		source_item_clear(&item);
-		return error_memory(error, strlen(path));
-	}
-	*out = item;
-	return BP_OK;
+	list->refused_count++;
+	free(where);
+	source_item_clear(&item);
+	return status;
 }
 
 /* Room for one more after `count` elements of `size` bytes: capacities are powers of two, so nobody keeps them. NULL: no memory. */
@@ -105,44 +52,66 @@ static void *array_room(void *base, size_t count, size_t size)
 static bp_status item_add(struct source_list *list, const char *path, const struct container_member *member, uint64_t bytes,
                           bp_error *error)
 {
-	bool taken;
+	char name[SOURCE_STEM_BYTES];
+	bp_error why;
+	const bp_status fault = source_name_make(path, member ? member->path : NULL, member ? member->fault : NULL, name, &why);
+	if (!source_is_wanted(list, name)) {
+		list->unwanted_count++;
+		return BP_OK;
+	}
+	if (fault)
+		return refuse(list, name, path, member ? member->path : NULL, why.message, error);
 	struct source_item *items = array_room(list->items, list->item_count, sizeof *items);
 	if (!items)
 		return error_memory(error, 2 * list->item_count * sizeof *items);
 	list->items = items;
-	struct source_item *item = &items[list->item_count];
-	bp_status status = material_take(list, path, member ? member->path : NULL, item, &taken, error);
-	if (status != BP_OK || !taken)
+	bp_status status = source_item_fill(&items[list->item_count], name, path, member, error);
+	if (status != BP_OK)
 		return status;
-	item->ordinal = member ? member->ordinal : 0;
-	item->bytes = member ? member->bytes : bytes;
+	if (!member)
+		items[list->item_count].bytes = bytes;
 	list->item_count++;
 	return BP_OK;
 }
 
-static bp_status stream_add(struct source_list *list, const char *path, bp_error *error)
+static bp_status stream_add(struct source_list *list, const char *path, bool named, bp_error *error)
 {
 	char **streams = array_room(list->streams, list->stream_count, sizeof *streams);
-	if (!streams)
-		return error_memory(error, 2 * list->stream_count * sizeof *streams);
-	list->streams = streams;
-	char *copy = strdup(path);
+	bool *marks = streams ? array_room(list->stream_named, list->stream_count, sizeof *marks) : NULL;
+	if (streams)
+		list->streams = streams;
+	if (marks)
+		list->stream_named = marks;
+	char *copy = marks ? strdup(path) : NULL;
 	if (!copy)
 		return error_memory(error, strlen(path));
-	streams[list->stream_count++] = copy;
+	/* in the order of their paths, and each once, so that the order of the inputs decides nothing */
+	size_t at = list->stream_count;
+	while (at > 0 && strcmp(streams[at - 1], path) > 0)
+		at--;
+	if (at > 0 && !strcmp(streams[at - 1], path)) {
+		marks[at - 1] |= named;
+		free(copy);
+		return BP_OK;
+	}
+	memmove(streams + at + 1, streams + at, (list->stream_count - at) * sizeof *streams);
+	memmove(marks + at + 1, marks + at, (list->stream_count - at) * sizeof *marks);
+	streams[at] = copy;
+	marks[at] = named;
+	list->stream_count++;
 	return BP_OK;
 }
 
 /* Lists the members of a container that has an index; anything else becomes a stream. */
-static bp_status container_add(struct source_list *list, const char *path, bp_error *error)
+static bp_status container_add(struct source_list *list, const char *path, bool named, bp_error *error)
 {
 	struct container *container = NULL;
 	struct container_member member;
 	bp_error reason = {0};
 	bool more = true;
-	bp_status status = container_open(path, CONTAINER_INDEXED, &container, &reason);
+	bp_status status = container_open(path, CONTAINER_INDEXED, list->options.charset, &container, &reason);
 	if (status == BP_ERROR_UNSUPPORTED)
-		return stream_add(list, path, error);
+		return stream_add(list, path, named, error);
 	if (status != BP_OK) {
 		notice(list, SOURCE_DAMAGED, path, reason.message);
 		return BP_OK;
@@ -162,6 +131,8 @@ static bp_status container_add(struct source_list *list, const char *path, bp_er
 		if (more && (status = item_add(list, path, &member, 0, error)) != BP_OK)
 			break;
 	}
+	if (container_remark(container) && status == BP_OK)
+		notice(list, SOURCE_DAMAGED, path, container_remark(container));
 	list->ignored_count += container_ignored(container);
 	container_close(container);
 	return status;
@@ -212,7 +183,7 @@ static bp_status folder_add(struct source_list *list, const char *path, const st
 			return BP_OK;
 		}
 	if (depth > DEPTH_MAX) {
-		notice(list, SOURCE_SKIPPED, path, "more than 1000 folders deep");
+		notice(list, SOURCE_DAMAGED, path, "more than 1000 folders deep: what is below is not searched");
 		return BP_OK;
 	}
 	struct folder *folders = array_room(visited->folders, visited->count, sizeof *folders);
@@ -224,7 +195,7 @@ static bp_status folder_add(struct source_list *list, const char *path, const st
 	if (count < 0) {
 		char reason[128];
 		snprintf(reason, sizeof reason, "unreadable folder: %s", strerror(errno));
-		notice(list, SOURCE_SKIPPED, path, reason);
+		notice(list, SOURCE_DAMAGED, path, reason);
 		return BP_OK;
 	}
 	for (int n = 0; n < count; n++) {
@@ -243,6 +214,26 @@ static bp_status folder_add(struct source_list *list, const char *path, const st
 	return status;
 }
 
+/* What is no file: an input when it is named, or is called like one; otherwise one more of the other files. */
+static bp_status thing_add(struct source_list *list, const char *path, bool named, const char *reason, bp_error *error)
+{
+	const enum source_kind kind = source_kind_by_name(path);
+	char name[SOURCE_STEM_BYTES];
+	if (!named && kind == SOURCE_KIND_OTHER) {
+		list->ignored_count++;
+		return BP_OK;
+	}
+	if (kind != SOURCE_KIND_MERL) {
+		notice(list, SOURCE_DAMAGED, path, reason);
+		return BP_OK;
+	}
+	source_stem(path, name);
+	if (source_is_wanted(list, name))
+		return refuse(list, name, path, NULL, reason, error);
+	list->unwanted_count++;
+	return BP_OK;
+}
+
 /* One file, folder or other thing; `named`: the user gave this very path. */
 static bp_status path_add(struct source_list *list, const char *path, bool named, struct visited *visited, int depth, bp_error *error)
 {
@@ -254,27 +245,83 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 		if (named && !is_link)
 			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot open: %s", path, strerror(why));
 		snprintf(reason, sizeof reason, "%s: %s", is_link ? "dangling link" : "cannot open", strerror(why));
-		notice(list, SOURCE_SKIPPED, path, reason);
-		return BP_OK;
+		return thing_add(list, path, named, reason, error);
 	}
 	if (S_ISDIR(about.st_mode))
 		return folder_add(list, path, &about, visited, depth, error);
-	if (!S_ISREG(about.st_mode)) {
-		notice(list, SOURCE_SKIPPED, path, kind_text(about.st_mode));
-		return BP_OK;
-	}
+	if (!S_ISREG(about.st_mode))
+		return thing_add(list, path, named, kind_text(about.st_mode), error);
 	switch (named ? source_kind_by_content(path) : source_kind_by_name(path)) {
 	case SOURCE_KIND_MERL: return item_add(list, path, NULL, (uint64_t)about.st_size, error);
-	case SOURCE_KIND_CONTAINER: return container_add(list, path, error);
-	case SOURCE_KIND_OTHER: break;
+	case SOURCE_KIND_CONTAINER: return container_add(list, path, named, error);
+	case SOURCE_KIND_FOREIGN:
+		notice(list, SOURCE_DAMAGED, path, "a container of a kind that is not read, or a part of one; unpack it, or pack it as zip or tar");
+		return BP_OK;
+	case SOURCE_KIND_OTHER:
+		if ((uint64_t)about.st_size == merl_file_bytes(LATTICE_MERL))
+			notice(list, SOURCE_SKIPPED, path, "as large as a MERL file, but not called NAME.binary; rename it, or name it on the command line");
+		break;
 	}
 	list->ignored_count++;
 	return BP_OK;
 }
 
+/* By name; those of one name by path and place, so that the same one comes first whatever the order of the inputs. */
 static int item_compare(const void *a, const void *b)
 {
-	return strcmp(((const struct source_item *)a)->name, ((const struct source_item *)b)->name);
+	const struct source_item *x = a, *y = b;
+	int order = strcmp(x->name, y->name);
+	if (order == 0)
+		order = strcmp(x->path, y->path);
+	return order ? order : (x->ordinal > y->ordinal) - (x->ordinal < y->ordinal);
+}
+
+/* Sorts the items. The same file met twice is one. */
+static void items_sort(struct source_list *list)
+{
+	size_t kept = 0;
+	if (list->item_count)
+		qsort(list->items, list->item_count, sizeof *list->items, item_compare);
+	for (size_t n = 0; n < list->item_count; n++)
+		if (kept > 0 && item_compare(&list->items[kept - 1], &list->items[n]) == 0)
+			source_item_clear(&list->items[n]);
+		else
+			list->items[kept++] = list->items[n];
+	list->item_count = kept;
+}
+
+/* Keeps the first of each name. */
+static bp_status items_claim(struct source_list *list, bp_error *error)
+{
+	const size_t count = list->item_count;
+	bp_status status = BP_OK;
+	list->item_count = 0;
+	for (size_t n = 0; n < count; n++) {
+		struct source_item item = list->items[n];
+		bp_error why;
+		const bp_status claimed = status ? status : source_name_claim(&list->names, item.name, item.path, item.member, &why);
+		if (claimed == BP_OK) {
+			list->items[list->item_count++] = item;
+			continue;
+		}
+		if (!status)
+			status = claimed == BP_ERROR_ARGUMENT ? refuse(list, item.name, item.path, item.member, why.message, error)
+			                                      : error_memory(error, sizeof item);
+		source_item_clear(&item);
+	}
+	return status;
+}
+
+/* Tells of an input that gave nothing, where nothing else was told. */
+static void input_check(struct source_list *list, const char *path, const struct source_list *before)
+{
+	char reason[160];
+	if (list->item_count > before->item_count || list->stream_count > before->stream_count || list->unwanted_count > before->unwanted_count ||
+	    list->refused_count > before->refused_count || list->damaged_count > before->damaged_count || list->skipped_count > before->skipped_count)
+		return;
+	snprintf(reason, sizeof reason, "no material in it; other files passed over: %zu (MERL files end in .binary)",
+	         list->ignored_count - before->ignored_count);
+	notice(list, SOURCE_DAMAGED, path, reason);
 }
 
 bp_status source_scan(const char *const *inputs, size_t count, const struct source_options *options, struct source_list *out,
@@ -286,15 +333,20 @@ bp_status source_scan(const char *const *inputs, size_t count, const struct sour
 		list.options = *options;
 	for (size_t n = 0; n < count && status == BP_OK; n++) {
 		struct visited visited = {0};
+		const struct source_list before = list;
 		status = path_add(&list, inputs[n], true, &visited, 0, error);
+		if (status == BP_OK)
+			input_check(&list, inputs[n], &before);
 		free(visited.folders);
 	}
+	if (status == BP_OK)
+		items_sort(&list);
+	if (status == BP_OK)
+		status = items_claim(&list, error);
 	if (status != BP_OK) {
 		source_list_free(&list);
 		return status;
 	}
-	if (list.item_count)
-		qsort(list.items, list.item_count, sizeof *list.items, item_compare);
 	*out = list;
 	return BP_OK;
 }
@@ -307,7 +359,8 @@ void source_list_free(struct source_list *list)
 		free(list->streams[n]);
 	free(list->items);
 	free(list->streams);
-	tdestroy(list->names, claim_free);
+	free(list->stream_named);
+	source_names_free(list->names);
 	*list = (struct source_list){0};
 }
 
@@ -319,56 +372,4 @@ static int item_name_compare(const void *name, const void *item)
 const struct source_item *source_list_find(const struct source_list *list, const char *name)
 {
 	return list->item_count ? bsearch(name, list->items, list->item_count, sizeof *list->items, item_name_compare) : NULL;
-}
-
-bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
-                             bool *more, bp_error *error)
-{
-	struct container_member member;
-	for (;;) {
-		const size_t ignored = container_ignored(stream);
-		bool taken;
-		bp_status status = container_next(stream, &member, more, error);
-		list->ignored_count += container_ignored(stream) - ignored;
-		if (status != BP_OK || !*more)
-			return status;
-		status = material_take(list, path, member.path, out, &taken, error);
-		if (status != BP_OK)
-			return status;
-		if (taken) {
-			out->ordinal = member.ordinal;
-			out->bytes = member.bytes;
-			return BP_OK;
-		}
-	}
-}
-
-void source_cursor_close(struct source_cursor *cursor)
-{
-	container_close(cursor->container);
-	free(cursor->path);
-	*cursor = (struct source_cursor){0};
-}
-
-bp_status source_item_read(const struct source_item *item, struct source_cursor *cursor, const struct merl_reading *reading,
-                           struct lattice *out, bp_error *error)
-{
-	bp_status status;
-	if (!item->member)
-		return lattice_read_path(item->path, reading, out, error);
-	if (!cursor->container || strcmp(cursor->path, item->path) != 0 || !container_ahead(cursor->container, item->ordinal)) {
-		source_cursor_close(cursor);
-		status = container_open(item->path, CONTAINER_INDEXED, &cursor->container, error);
-		if (status != BP_OK)
-			return status;
-		cursor->path = strdup(item->path);
-		if (!cursor->path) {
-			source_cursor_close(cursor);
-			return error_memory(error, strlen(item->path));
-		}
-	}
-	status = container_seek(cursor->container, item->ordinal, error);
-	if (status != BP_OK)
-		return status;
-	return lattice_read(container_read, cursor->container, reading, out, error);
 }

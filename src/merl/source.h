@@ -21,16 +21,22 @@
 #include "container.h"
 
 enum source_notice {
-	SOURCE_SKIPPED, /* not a file at all, a dangling link, an unreadable folder: a warning */
-	SOURCE_DAMAGED  /* a container that cannot be read (further): counts as a failed input */
+	SOURCE_SKIPPED, /* nothing is lost by it, as a folder that is met twice: a warning */
+	SOURCE_DAMAGED  /* a container or a folder that cannot be read (further), or has no material: counts as a failed input */
 };
+
+struct source_item;
 
 struct source_options {
 	/* Told what is left out, and why; may be NULL. `reason` is one line without the path. */
 	void (*notice)(void *user, enum source_notice kind, const char *path, const char *reason);
+	/* Told of a single material that cannot be packed, and why. Its name and member are fit to be shown: what is no legal text is
+	 * escaped. NULL: notice is told, as SOURCE_DAMAGED, of "PATH: MEMBER". */
+	void (*refused)(void *user, const struct source_item *item, const char *reason);
 	/* Whether a material of that name is asked for (a manifest); NULL: all are. */
 	bool (*wanted)(void *user, const char *name);
 	void *user;
+	const char *charset; /* of names in containers that are not UTF-8 (container.h); NULL: unknown */
 };
 
 struct source_item {
@@ -44,19 +50,23 @@ struct source_item {
 struct source_list {
 	struct source_item *items; /* in ascending byte order of names */
 	size_t item_count;
-	char **streams;            /* paths, in the order they were found */
+	char **streams;            /* paths, in ascending byte order */
+	bool *stream_named;        /* of each, whether the user gave this very path */
 	size_t stream_count;
 	size_t ignored_count;      /* files that are neither MERL files nor containers by their name */
 	size_t unwanted_count;     /* materials that options->wanted turned down */
 	size_t skipped_count, damaged_count; /* notices of each kind */
+	size_t refused_count;      /* materials that cannot be packed */
 	struct source_options options;
-	void *names;               /* who has which name; source_claim */
+	void *names;               /* who has which name */
+	const void *told;          /* the stream whose emptiness was told */
 };
 
 /*
- * Lists what the inputs hold; reads no table. Refuses (nothing to free then) an input that is not
- * there (BP_ERROR_IO), two materials of one name, naming both paths, and an illegal name
- * (BP_ERROR_ARGUMENT). An empty result is no error here. Free with source_list_free.
+ * Lists what the inputs hold; reads no table. Every material that is wanted is listed or refused: refused are illegal names, what
+ * has no bytes of its own, and of materials of one name all but the first in the order of paths and members, whatever the order of
+ * the inputs. An input that is not there ends it (BP_ERROR_IO; nothing to free then), one without any material is told. An empty
+ * result is no error here. Free with source_list_free.
  */
 bp_status source_scan(const char *const *inputs, size_t count, const struct source_options *options, struct source_list *out,
                       bp_error *error);
@@ -68,12 +78,17 @@ const struct source_item *source_list_find(const struct source_list *list, const
 /*
  * The next wanted material of a stream that the caller opened (CONTAINER_SEQUENTIAL): *out belongs
  * to the caller (source_item_clear); read it with container_read. *more = false at the end.
- * BP_ERROR_ARGUMENT: an illegal or a second name: the build must stop. Other errors concern one
- * member, as in container_next. Messages name the member.
+ * Errors concern one member, as in container_next. Where that is a material which is refused, *out says which, as for
+ * options->refused, and belongs to the caller too; otherwise out->name is NULL, and messages name the member.
  */
 bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
                              bool *more, bp_error *error);
+/* An item's strings: copies are made (BP_ERROR_MEMORY: none), and freed. member may be NULL. */
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member, bp_error *error);
 void source_item_clear(struct source_item *item);
+
+/* What options->wanted says. */
+bool source_is_wanted(const struct source_list *list, const char *name);
 
 /*
  * Reads one item. The cursor keeps a container open between calls: start with {0}, and

@@ -15,6 +15,9 @@ static bool ends_with(const char *text, const char *suffix)
 static const char *const COMPRESSIONS[] = {".gz", ".bz2", ".xz", ".lzma", ".zst", ".Z", NULL};
 static const char *const ARCHIVES[] = {".zip", ".tar", ".tgz", ".tbz", ".tbz2", ".txz", ".tzst", NULL};
 
+/* Containers that are not read, and parts of split ones: they may hold materials, so they are not passed over in silence. */
+static const char *const FOREIGN[] = {".7z", ".rar", ".lz", ".lz4", ".lzo", ".br", ".cab", ".z01", ".001", NULL};
+
 static const char *suffix_among(const char *name, const char *const *suffixes)
 {
 	while (*suffixes && !ends_with(name, *suffixes))
@@ -37,6 +40,8 @@ enum source_kind source_kind_by_name(const char *path)
 		return SOURCE_KIND_MERL;
 	if (suffix_among(name, ARCHIVES))
 		return SOURCE_KIND_CONTAINER;
+	if (suffix_among(name, FOREIGN))
+		return SOURCE_KIND_FOREIGN;
 	const char *compression = suffix_among(name, COMPRESSIONS);
 	if (!compression)
 		return SOURCE_KIND_OTHER;
@@ -53,7 +58,7 @@ enum source_kind source_kind_by_content(const char *path)
 {
 	static const struct { const char *bytes; size_t count, offset; } MAGIC[] = {
 		{"PK\3\4", 4, 0}, {"PK\5\6", 4, 0}, {"\x1f\x8b", 2, 0}, {"\x1f\x9d", 2, 0}, {"BZh", 3, 0}, {"\xfd" "7zXZ", 5, 0},
-		{"\x28\xb5\x2f\xfd", 4, 0}, {"ustar", 5, 257}, {"\x5d\0\0", 3, 0},
+		{"\x28\xb5\x2f\xfd", 4, 0}, {"ustar", 5, 257}, {"\x5d\0\0", 3, 0}, {"PK\7\10", 4, 0}, {"7z\xbc\xaf", 4, 0}, {"Rar!", 4, 0},
 	};
 	static const unsigned char MERL[12] = {90, 0, 0, 0, 90, 0, 0, 0, 180, 0, 0, 0};
 	char head[512] = {0};
@@ -69,6 +74,15 @@ enum source_kind source_kind_by_content(const char *path)
 		if (memcmp(head + MAGIC[n].offset, MAGIC[n].bytes, MAGIC[n].count) == 0)
 			return SOURCE_KIND_CONTAINER;
 	return source_kind_by_name(path) == SOURCE_KIND_CONTAINER ? SOURCE_KIND_CONTAINER : SOURCE_KIND_MERL;
+}
+
+size_t source_suffix_bytes(const char *name)
+{
+	static const char suffix[] = ".binary";
+	const size_t bytes = strlen(name);
+	const char *compression = suffix_among(name, COMPRESSIONS);
+	const size_t packed = compression ? strlen(compression) : 0, whole = packed + sizeof suffix - 1;
+	return bytes > whole && strncasecmp(name + bytes - whole, suffix, sizeof suffix - 1) == 0 ? whole : 0;
 }
 
 void source_stem(const char *path, char name[SOURCE_STEM_BYTES])

@@ -4,7 +4,14 @@
 #ifndef MERL_SOURCE_KIND_H
 #define MERL_SOURCE_KIND_H
 
-enum source_kind { SOURCE_KIND_OTHER, SOURCE_KIND_MERL, SOURCE_KIND_CONTAINER };
+#include <stddef.h>
+
+enum source_kind {
+	SOURCE_KIND_OTHER,
+	SOURCE_KIND_MERL,
+	SOURCE_KIND_CONTAINER,
+	SOURCE_KIND_FOREIGN /* a container that is not read */
+};
 enum { SOURCE_STEM_BYTES = 512 };
 
 /* By the path's last part alone (for files found in folders); hidden files are SOURCE_KIND_OTHER. */
@@ -18,5 +25,8 @@ enum source_kind source_kind_by_content(const char *path);
 
 /* The material's name: the last part of the path without its suffix (two for x.binary.gz); overlong ones are cut, and are illegal still. */
 void source_stem(const char *path, char name[SOURCE_STEM_BYTES]);
+
+/* How many bytes of a name are a measured file's suffix: ".binary", ".binary.gz" and so on, in either case; 0: it has none. */
+size_t source_suffix_bytes(const char *name);
 
 #endif

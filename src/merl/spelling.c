@@ -3,6 +3,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "normal_form.h"
+
 enum { BEGINNING_LEAST = 3 };
 
 static unsigned char folded(char letter)
@@ -67,7 +69,16 @@ void name_guess_start(struct name_guess *guess, const char *wanted)
 void name_guess_offer(struct name_guess *guess, const char *candidate)
 {
 	const size_t bytes = strlen(candidate);
-	if (!guess->distance || !bytes || bytes > SPELLING_BYTES_MAX)
+	if (guess->best[0] && !guess->distance)
+		return;
+	if (!bytes || bytes > SPELLING_BYTES_MAX)
+		return;
+	if (normal_form_equal(guess->wanted, candidate)) {
+		guess->distance = 0; /* nothing is nearer */
+		memcpy(guess->best, candidate, bytes + 1);
+		return;
+	}
+	if (!guess->limit)
 		return;
 	size_t distance = spelling_distance(guess->wanted, candidate, guess->distance);
 	if (strlen(guess->wanted) >= BEGINNING_LEAST && begins(guess->wanted, candidate))

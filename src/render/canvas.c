@@ -32,7 +32,7 @@ bp_status canvas_make(uint32_t width, uint32_t height, bool svg, struct canvas *
 		}
 		fprintf(canvas->text,
 		        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%u\" height=\"%u\" viewBox=\"0 0 %u %u\" "
-		        "font-family=\"sans-serif\">\n",
+		        "font-family=\"sans-serif\">\n" PICTURE_SVG_MARK "\n",
 		        width, height, width, height);
 	} else {
 		bp_status status = picture_alloc(width, height, &canvas->picture, error);

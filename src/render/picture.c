@@ -71,7 +71,7 @@ bp_status picture_compare(const struct sphere_image *reference, const struct sph
 bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp_error *error)
 {
 	struct output_file file;
-	bp_status status = output_file_open(path, &file, error);
+	bp_status status = output_file_open(path, OUTPUT_REPLACE, &file, error);
 	if (status != BP_OK)
 		return status;
 	status = output_file_write(&file, bytes, count, error);
@@ -81,19 +81,32 @@ bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp
 	return status;
 }
 
+/* Behind signature and header of a PNG file: who made it, as a text chunk (length, type, text, CRC32). */
+#define PNG_MARK "\0\0\0\x11" "tEXt" "Software\0" "brdfpack" "\xf2\x0c\xf4\x0d"
+enum { PNG_HEAD_BYTES = 33, PNG_MARK_BYTES = sizeof PNG_MARK - 1 };
+
+bool picture_is_ours(const uint8_t *head, size_t count)
+{
+	if (count >= PNG_HEAD_BYTES + PNG_MARK_BYTES && !memcmp(head, "\x89PNG\r\n\x1a\n", 8))
+		return !memcmp(head + PNG_HEAD_BYTES, PNG_MARK, PNG_MARK_BYTES);
+	return count >= 4 && !memcmp(head, "<svg", 4) && memmem(head, count, PICTURE_SVG_MARK, sizeof PICTURE_SVG_MARK - 1);
+}
+
 bp_status picture_encode_png(const struct picture *picture, uint8_t **out, size_t *count, bp_error *error)
 {
 	png_image png = {.version = PNG_IMAGE_VERSION, .width = picture->width, .height = picture->height, .format = PNG_FORMAT_RGB};
 	png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
-	uint8_t *memory = malloc(bytes);
+	uint8_t *memory = malloc(bytes + PNG_MARK_BYTES);
 	if (!memory)
 		return error_memory(error, bytes);
 	if (!png_image_write_to_memory(&png, memory, &bytes, 0, picture->rgb, 0, NULL)) {
 		free(memory);
 		return error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "cannot encode as PNG: %s", png.message);
 	}
+	memmove(memory + PNG_HEAD_BYTES + PNG_MARK_BYTES, memory + PNG_HEAD_BYTES, bytes - PNG_HEAD_BYTES);
+	memcpy(memory + PNG_HEAD_BYTES, PNG_MARK, PNG_MARK_BYTES);
 	*out = memory;
-	*count = bytes;
+	*count = bytes + PNG_MARK_BYTES;
 	return BP_OK;
 }
 

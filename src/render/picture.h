@@ -4,6 +4,8 @@
 #ifndef RENDER_PICTURE_H
 #define RENDER_PICTURE_H
 
+#include <stdbool.h>
+
 #include "image.h"
 
 /* 8-bit RGB, interleaved, top row first: what a PNG file holds. */
@@ -28,8 +30,14 @@ bp_status picture_compare(const struct sphere_image *reference, const struct sph
 bp_status picture_encode_png(const struct picture *picture, uint8_t **bytes, size_t *count, bp_error *error);
 
 /*
- * Files. Each is written to a temporary file beside `path`, then renamed: an older file is replaced whole
- * or not at all. PFM: RGB float32 little-endian, bottom row first; values are in 1/sr, the scale field -1,
+ * Whether a file that begins with these bytes is a PNG or an SVG that this program drew: a text chunk, or a comment, says so. A
+ * PFM file has no room for that.
+ */
+#define PICTURE_SVG_MARK "<!-- drawn by brdfpack -->"
+bool picture_is_ours(const uint8_t *head, size_t count);
+
+/*
+ * Files. An older file is replaced whole or not at all (output_file.h). PFM: RGB float32 little-endian, bottom row first; values are in 1/sr, the scale field -1,
  * but for images of extreme magnitude: those are in units of their own, which the scale field tells (negative).
  */
 bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp_error *error);

@@ -12,7 +12,7 @@ static void text_print(FILE *out, const char *string)
 	putc('"', out);
 	while (*text) {
 		uint32_t code;
-		size_t length = name_utf8(text, 4, &code);
+		size_t length = name_character(text, 4, &code);
 		if (!length) {
 			fputs("\\ufffd", out);
 			length = 1;

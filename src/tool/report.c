@@ -110,6 +110,12 @@ void report_warning(const char *file, const char *material, const char *format, 
 	line_print(&line);
 }
 
+void report_remark(const char *file, const bp_error *error)
+{
+	if (error->message[0])
+		report_warning(file, NULL, "%s", error->message);
+}
+
 int report_usage(const struct command *command, const char *format, ...)
 {
 	struct line line = {.used = 0};

@@ -24,6 +24,9 @@ void report_error(const char *file, const char *material, const bp_error *error)
 void report_warning(const char *file, const char *material, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 
+/* The warning that came with a success (BP_OK and a message), if there is one. */
+void report_remark(const char *file, const bp_error *error);
+
 /* "brdfpack COMMAND: reason" and where the help is; returns EXIT_USAGE. */
 int report_usage(const struct command *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -12,11 +12,11 @@
 #include "name.h"
 #include "error.h"
 
-static bp_status word_add(struct scene_words *words, const char *text, size_t bytes, bp_error *error)
+static bp_status word_add(struct scene_words *words, const char *text, size_t bytes, bool spare, bp_error *error)
 {
 	if (words->count == words->room) {
 		size_t room = words->room ? 2 * words->room : 64;
-		char **word = realloc(words->word, room * sizeof *word);
+		struct scene_word *word = realloc(words->word, room * sizeof *word);
 		if (!word)
 			return error_memory(error, room * sizeof *word);
 		words->word = word;
@@ -25,14 +25,14 @@ static bp_status word_add(struct scene_words *words, const char *text, size_t by
 	char *copy = strndup(text, bytes);
 	if (!copy)
 		return error_memory(error, bytes);
-	words->word[words->count++] = copy;
+	words->word[words->count++] = (struct scene_word){.text = copy, .spare = spare};
 	return BP_OK;
 }
 
-/* A word as it stands in the file: of every byte of a name an escape makes at most these. */
-enum { ESCAPE_BYTES_MAX = 6, WORD_BYTES_MAX = BP_NAME_BYTES_MAX * ESCAPE_BYTES_MAX };
+/* A word as it stands in the file: a path with escapes. */
+enum { WORD_BYTES_MAX = 8192 };
 
-/* What a word means, and a bit more than fits a name. */
+/* What a word means. */
 struct meaning {
 	char text[WORD_BYTES_MAX];
 	size_t bytes;
@@ -132,38 +132,67 @@ struct open_word {
 	bool backslash; /* the last byte is one that stands for no other */
 };
 
-static bp_status name_add(struct scene_words *words, const char *text, size_t bytes, bp_error *error)
+/* Adds what may name a material or its measured file: the last part of a path must be legal. */
+static bp_status name_add(struct scene_words *words, const char *text, size_t bytes, bool spare, bp_error *error)
 {
-	return name_fault(text, bytes) ? BP_OK : word_add(words, text, bytes, error);
+	const char *slash = memrchr(text, '/', bytes), *last = slash ? slash + 1 : text;
+	const char *back = memrchr(text, '\\', bytes), *windows = back ? back + 1 : text;
+	const size_t left = bytes - (size_t)(last - text), windows_left = bytes - (size_t)(windows - text);
+	return memchr(text, 0, bytes) || (name_fault(last, left) && name_fault(windows, windows_left)) ? BP_OK : word_add(words, text, bytes, spare, error);
+}
+
+/* A URI's %XX; what is none stays as it is. */
+static void percents_read(const char *text, size_t bytes, struct meaning *to)
+{
+	to->bytes = 0;
+	for (size_t at = 0; at < bytes; at++) {
+		uint32_t byte;
+		if (text[at] == '%' && bytes - at > 2 && number_take(text + at + 1, bytes - at - 1, 16, 2, &byte) == 2) {
+			to->text[to->bytes++] = (char)byte;
+			at += 2;
+		} else {
+			to->text[to->bytes++] = text[at];
+		}
+	}
+}
+
+static bool differs(const struct open_word *word, const struct meaning *meaning)
+{
+	return meaning->bytes != word->bytes || memcmp(meaning->text, word->text, word->bytes) != 0;
 }
 
 /* Adds the word, and what it means if it has escapes. */
 static bp_status word_close(struct scene_words *words, const struct open_word *word, bool escapes, bp_error *error)
 {
-	struct meaning meaning;
+	struct meaning plain, reference, percent;
+	const bool backslashes = memchr(word->text, '\\', word->bytes) && backslashes_read(word->text, word->bytes, &plain);
 	if (escapes)
-		return memchr(word->text, '\\', word->bytes) && backslashes_read(word->text, word->bytes, &meaning)
-			? name_add(words, meaning.text, meaning.bytes, error) : BP_OK;
-	bp_status status = name_add(words, word->text, word->bytes, error);
-	if (!status && memchr(word->text, '&', word->bytes)) {
-		references_read(word->text, word->bytes, &meaning);
-		status = name_add(words, meaning.text, meaning.bytes, error);
-	}
+		return backslashes ? name_add(words, plain.text, plain.bytes, false, error) : BP_OK;
+	references_read(word->text, word->bytes, &reference);
+	percents_read(word->text, word->bytes, &percent);
+	const bool by_reference = differs(word, &reference), by_percent = differs(word, &percent);
+	bp_status status = name_add(words, word->text, word->bytes, backslashes || by_reference || by_percent, error);
+	if (!status && by_reference)
+		status = name_add(words, reference.text, reference.bytes, false, error);
+	if (!status && by_percent)
+		status = name_add(words, percent.text, percent.bytes, false, error);
 	return status;
 }
 
 static bp_status quotes_scan(struct scene_words *words, FILE *file, bp_error *error)
 {
-	struct open_word open[4] = {{.possible = false}}; /* of " and of ', then the same with escapes */
+	static const struct { char mark; bool escapes; } KINDS[] = {{'"', false}, {'\'', false}, {'@', false}, {'"', true}, {'\'', true}};
+	enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
+	struct open_word open[KIND_COUNT] = {{.possible = false}};
 	bp_status status = BP_OK;
 	int c;
 
 	while (!status && (c = getc_unlocked(file)) != EOF)
-		for (int kind = 0; kind < 4 && !status; kind++) {
+		for (int kind = 0; kind < KIND_COUNT && !status; kind++) {
 			struct open_word *word = &open[kind];
-			const bool escapes = kind >= 2, escaped = escapes && word->backslash;
+			const bool escapes = KINDS[kind].escapes, escaped = escapes && word->backslash;
 			word->backslash = c == '\\' && !escaped;
-			if (c == (kind % 2 ? '\'' : '"') && !escaped) {
+			if (c == KINDS[kind].mark && !escaped) {
 				if (word->possible)
 					status = word_close(words, word, escapes, error);
 				word->bytes = 0;
@@ -201,7 +230,7 @@ bp_status scene_words_add(struct scene_words *words, const char *path, bp_error 
 
 static int ascending(const void *a, const void *b)
 {
-	return strcmp(*(char *const *)a, *(char *const *)b);
+	return strcmp(((const struct scene_word *)a)->text, ((const struct scene_word *)b)->text);
 }
 
 void scene_words_sort(struct scene_words *words)
@@ -211,17 +240,19 @@ void scene_words_sort(struct scene_words *words)
 		return;
 	qsort(words->word, words->count, sizeof *words->word, ascending);
 	for (size_t n = 0; n < words->count; n++)
-		if (kept > 0 && !strcmp(words->word[kept - 1], words->word[n]))
-			free(words->word[n]);
-		else
+		if (kept > 0 && !strcmp(words->word[kept - 1].text, words->word[n].text)) {
+			words->word[kept - 1].spare &= words->word[n].spare;
+			free(words->word[n].text);
+		} else {
 			words->word[kept++] = words->word[n];
+		}
 	words->count = kept;
 }
 
 void scene_words_free(struct scene_words *words)
 {
 	for (size_t n = 0; n < words->count; n++)
-		free(words->word[n]);
+		free(words->word[n].text);
 	free(words->word);
 	*words = (struct scene_words){0};
 }

@@ -1,24 +1,29 @@
 /*
  * scene.h: which materials a scene file speaks of.
  *
- * pbrt, Mitsuba XML, USD ASCII and JSON all write names between quotes. Any text between two quotes of one kind
- * (" or '), on one line, is a word; what the words mean is not looked at. A word counts as it stands, and as it reads
- * with JSON's backslashes or XML's &references; undone.
+ * pbrt, Mitsuba XML, USD ASCII and JSON all write names, and paths of measured files, between quotes. Any text between two quotes
+ * of one kind (" or ', and USD's @), on one line, is a word; what the words mean is not looked at. A word counts as it stands, and
+ * as it reads with JSON's backslashes, XML's &references; or a URI's %XX undone.
  */
 #ifndef TOOL_SCENE_H
 #define TOOL_SCENE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "brdfpack.h"
 
+struct scene_word {
+	char *text;
+	bool spare; /* it also reads otherwise, as another word: where this one means nothing, nothing is missing */
+};
 /* Words of all the files that were added; zeroed to begin with. */
 struct scene_words {
-	char **word;
+	struct scene_word *word;
 	size_t count, room;
 };
 
-/* Adds the words of a regular file, those that could be a material's name. Errors: BP_ERROR_IO, BP_ERROR_MEMORY. */
+/* Adds the words of a regular file, those that could be a material's name or a measured file's path. Errors: BP_ERROR_IO, BP_ERROR_MEMORY. */
 bp_status scene_words_add(struct scene_words *words, const char *path, bp_error *error);
 
 /* Sorts them by their bytes and removes doubles. */

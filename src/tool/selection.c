@@ -1,6 +1,8 @@
 #include "selection.h"
 
 #include "error.h"
+#include "material_name.h"
+#include "merl/normal_form.h"
 #include "merl/spelling.h"
 #include "report.h"
 
@@ -8,14 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void missing_report(const struct selection *selection, const char *name)
+void selection_missing_report(const struct selection *selection, const char *written)
 {
+	char name[BP_NAME_BYTES_MAX + 1];
 	struct index_page leaf = {0};
 	struct index_entry entry;
 	struct name_guess guess;
 	bp_error error = {.status = BP_ERROR_NOT_FOUND, .offset = BP_NO_OFFSET};
 	uint64_t count = bp_archive_count(selection->archive);
 
+	if (!material_name_bare(written, name))
+		name[0] = '\0';
 	name_guess_start(&guess, name);
 	for (uint64_t i = 0; i < count; i++) {
 		if (archive_entry(selection->archive, i, &leaf, &entry, NULL))
@@ -23,9 +28,10 @@ static void missing_report(const struct selection *selection, const char *name)
 		name_guess_offer(&guess, entry.name);
 	}
 	const char *best = name_guess_best(&guess);
-	snprintf(error.message, sizeof error.message, "there is no such material%s%s%s", best ? "; did you mean '" : "",
-	         best ? best : "", best ? "'?" : "; `brdfpack list` shows what is there");
-	report_error(selection->path, name, &error);
+	const char *after = !best ? "; `brdfpack list` shows what is there" : !normal_form_equal(name, best) ? "'?"
+	                    : "'? It is the same text in another Unicode form (letters and accents apart, or composed): copy it from `brdfpack list`";
+	snprintf(error.message, sizeof error.message, "there is no such material%s%s%s", best ? "; did you mean '" : "", best ? best : "", after);
+	report_error(selection->path, written, &error);
 }
 
 bool selection_open(struct selection *selection, const char *path, char **names, int name_count)
@@ -49,14 +55,14 @@ bool selection_open(struct selection *selection, const char *path, char **names,
 		return false;
 	}
 	for (int i = 0; i < name_count; i++) {
-		bp_status status = bp_archive_find(selection->archive, names[i], &selection->index[selection->count], &error);
+		bp_status status = material_name_find(selection->archive, names[i], &selection->index[selection->count], &error);
 		if (!status) {
 			selection->count++;
 			continue;
 		}
 		selection->incomplete = true;
 		if (status == BP_ERROR_NOT_FOUND)
-			missing_report(selection, names[i]);
+			selection_missing_report(selection, names[i]);
 		else
 			report_error(path, names[i], &error);
 	}

@@ -25,11 +25,13 @@ struct selection {
 /*
  * Opens the archive and finds the names; no names: all materials. Reports what goes wrong. False
  * when the archive cannot be used at all. Names that are not there are reported with the nearest
- * spelling and left out.
+ * spelling and left out. NAME.binary and FOLDER/NAME.binary mean NAME where there is nothing of that name itself.
  */
 bool selection_open(struct selection *selection, const char *path, char **names, int name_count);
 /* The same from operands ARCHIVE [NAME]...; an exit code. */
 int selection_from(struct selection *selection, const struct command *command, char **operands, int operand_count);
+/* Says that the archive has no such material, and which may have been meant. */
+void selection_missing_report(const struct selection *selection, const char *written);
 void selection_close(struct selection *selection);
 
 /* The index entry of the n-th selected material. A walk over all reads every index page once. */

@@ -37,6 +37,7 @@ struct attempt {
 	double foreseen;       /* what all units will take, foreseen before the lowest plane; 0 where it was not */
 	double wanted;         /* what they took, or will where the attempt is not complete */
 	bool complete;
+	bp_status status;      /* what the watch said */
 };
 
 void encoding_clear(struct encoding *e)
@@ -55,9 +56,9 @@ static bool worth_going_on(const struct encoding *e, struct attempt *a)
 	return a->wanted >= a->search->low * a->room && a->wanted <= a->search->high * a->room;
 }
 
-/* Units from *unit on until layer l is full; `bytes` of the record come before it. False: the attempt was given up. */
+/* Units from *unit on until layer l is full; `bytes` of the record come before it. False: the attempt was given up, or the watch ended it. */
 static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, struct mixed_coder *coder, uint64_t bytes, uint32_t *unit,
-                         uint64_t *largest_unit)
+                         uint64_t *largest_unit, bp_error *error)
 {
 	struct range_encoder *encoder = coder->encoder, kept;
 	struct byte_buffer *out = &e->stream[l];
@@ -73,6 +74,9 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 	while (*unit < units && !out->failed && (last ? now <= 3 * (uint64_t)e->limit[l] : now + 2 * *largest_unit + 16 <= e->limit[l])) {
 		const uint64_t before = now;
 		const uint32_t plane = planes_unit_plane(e->planes, *unit);
+		a->status = watch_tell(e->watch, 0.6 + 0.2 * *unit / units, error);
+		if (a->status)
+			return false;
 		planes_encode_unit(e->planes, coder, (*unit)++);
 		now = bytes + range_encoder_bytes(encoder, 0);
 		*largest_unit = now - before > *largest_unit ? now - before : *largest_unit;
@@ -108,7 +112,9 @@ static bp_status levels_encode(struct encoding *e, struct attempt *a, bp_error *
 	a->complete = true;
 	e->bytes = e->head_bytes;
 	for (uint32_t l = 0; l < e->layers && a->complete; l++) {
-		a->complete = layer_encode(e, a, l, &coder, e->bytes, &unit, &largest_unit);
+		a->complete = layer_encode(e, a, l, &coder, e->bytes, &unit, &largest_unit, error);
+		if (a->status)
+			return a->status;
 		if (e->stream[l].failed)
 			return error_memory(error, e->stream[l].count);
 		e->bytes += e->stream[l].count;

@@ -16,6 +16,7 @@ struct encoding {
 	uint64_t head_bytes;         /* of the record, without any bit planes */
 	uint32_t layers;
 	uint32_t limit[LAYERS_MAX];  /* record bytes at the end of every layer; the last is the budget */
+	const struct watch *watch;   /* told after every unit */
 	/* What it leaves: */
 	float step, centre[2];
 	struct byte_buffer stream[LAYERS_MAX]; /* the contents of the sections */

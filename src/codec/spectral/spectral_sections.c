@@ -70,7 +70,7 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 static bp_status spectral_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
                                 uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
-	struct encoding e = { .model = model->spectral };
+	struct encoding e = { .model = model->spectral, .watch = request->options->watch };
 	const uint32_t budget = request->record_bytes_max;
 	uint64_t least;
 	bp_status status;

@@ -7,6 +7,7 @@
 #include "outcomes.h"
 #include "tool/command.h"
 #include "tool/interrupt.h"
+#include "tool/output_check.h"
 #include "tool/progress.h"
 #include "tool/report.h"
 
@@ -15,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* Hands out the listed items, then members of streams as they are read, until all results are in. */
 static void work(struct build *build)
@@ -46,12 +48,17 @@ static void work(struct build *build)
 /* What the manifest lists and no input has; known when all streams have been read. */
 static void missing_report(struct build *build)
 {
-	const bp_error error = {BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "listed, but not among the inputs"};
-	for (size_t i = 0; i < build->manifest.count; i++)
-		if (!build->manifest.entries[i].found && build_shard_has(build->options, build->manifest.entries[i].name)) {
-			report_error(build->options->manifest, build->manifest.entries[i].name, &error);
-			build->totals.missing++;
-		}
+	bp_error error;
+	for (size_t i = 0; i < build->manifest.count; i++) {
+		const struct manifest_entry *entry = &build->manifest.entries[i];
+		if (entry->found || !build_shard_has(build->options, entry->name))
+			continue;
+		error_set(&error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "listed, but not among the inputs%s",
+		          entry->other_form ? "; there is one of the same text in another Unicode form (letters and accents apart, or composed): list it as "
+		                              "its file is called" : "");
+		report_unpacked(build->options->manifest, entry->name, &error, build->options->json);
+		build->totals.missing++;
+	}
 }
 
 /* Spool -> archive, in name order. BP_OK without *written: a signal came. */
@@ -94,16 +101,31 @@ static bp_status archive_write(struct build *build, bool *written, bp_error *err
 	}
 	status = archive_writer_commit(writer, error);
 	*written = !status;
+	if (!status && !build->options->quiet)
+		report_remark(build->options->output, error);
 	return status;
 }
 
-/* The archive writer would refuse it as well, but only when all the work is done. */
-static bp_status output_refuse(const char *output, bp_error *error)
+/* That the output can be made, and is nothing that must stay: what was given first, then the files that were found there. */
+static bp_status output_look(const struct build *build, bool found, bp_error *error)
 {
-	struct stat facts;
-	if (stat(output, &facts) == 0 && !S_ISREG(facts.st_mode))
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "is %s, not a regular file", S_ISDIR(facts.st_mode) ? "a folder" : "something else");
-	return BP_OK;
+	const struct build_options *options = build->options;
+	const struct source_list *sources = &build->sources;
+	bp_status status = BP_OK;
+	if (!found) {
+		if (options->manifest && !options->force)
+			status = output_check_input(options->output, options->manifest, error);
+		return status ? status
+		              : output_check_path(options->output, OUTPUT_KIND_ARCHIVE, options->force, (const char *const *)options->inputs,
+		                                  (size_t)options->input_count, error);
+	}
+	if (options->force || access(options->output, F_OK) != 0)
+		return BP_OK;
+	for (size_t n = 0; n < sources->item_count && !status; n++)
+		status = output_check_input(options->output, sources->items[n].path, error);
+	for (size_t n = 0; n < sources->stream_count && !status; n++)
+		status = output_check_input(options->output, sources->streams[n], error);
+	return status;
 }
 
 /* With --update: opens the archive that is there, before the workers are forked; none there is as good as an empty one. */
@@ -128,6 +150,10 @@ static void build_prepare_and_work(struct build *build)
 	bp_error error;
 	int wake_fd;
 
+	if (output_look(build, false, &error)) {
+		build_stop(build, options->output, NULL, &error);
+		return;
+	}
 	if (options->manifest && manifest_read(options->manifest, &build->manifest, &error)) {
 		build_stop(build, options->manifest, NULL, &error);
 		return;
@@ -140,7 +166,7 @@ static void build_prepare_and_work(struct build *build)
 		missing_report(build);
 	if ((build->items.count == 0 && !streams && !shard_is_empty(build)) || (build->options->strict && !totals_whole(&build->totals)))
 		return;
-	if (output_refuse(options->output, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
+	if (output_look(build, true, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
 		build_stop(build, options->output, NULL, &error);
 		return;
 	}

@@ -9,19 +9,35 @@
 #include <string.h>
 #include <unistd.h>
 
+/* An input, as a whole or from here on. */
+static void damage_take(struct build *build, const char *path, const bp_error *error)
+{
+	report_unpacked(path, NULL, error, build->options->json);
+	build->totals.damaged++;
+}
+
 static void notice_take(void *user, enum source_notice kind, const char *path, const char *reason)
 {
 	struct build *build = user;
 	if (kind == SOURCE_DAMAGED) {
 		bp_error error;
 		error_set(&error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", reason);
-		report_error(path, NULL, &error);
-		build->totals.damaged++;
+		damage_take(build, path, &error);
 	} else {
-		if (!build->options->quiet)
-			report_warning(path, NULL, "%s; skipped", reason);
+		report_passed_over(path, reason, build->options->json, build->options->quiet);
 		build->totals.skipped++;
 	}
+}
+
+static void refusal_take(void *user, const struct source_item *source, const char *reason)
+{
+	struct build *build = user;
+	char label[ITEM_LABEL_BYTES];
+	bp_error error;
+	error_set(&error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", reason);
+	item_label(source, label);
+	report_unpacked(label, source->name, &error, build->options->json);
+	build->totals.refused++;
 }
 
 /* Listed, where there is a manifest, and of this shard, where there are shards. */
@@ -31,6 +47,8 @@ static bool is_wanted(void *user, const char *name)
 	struct manifest_entry *entry = manifest_find(&build->manifest, name);
 	if (entry)
 		entry->found = true;
+	else
+		manifest_note_unlisted(&build->manifest, name);
 	return (entry || build->manifest.count == 0) && build_shard_has(build->options, name);
 }
 
@@ -66,7 +84,7 @@ static bp_status order_make(struct build *build, bp_error *error)
 void build_inputs_collect(struct build *build)
 {
 	const struct source_options options = {
-		.notice = notice_take, .wanted = build->manifest.count > 0 || build->options->shard_count > 1 ? is_wanted : NULL, .user = build};
+		.notice = notice_take, .refused = refusal_take, .charset = build->options->charset, .wanted = build->manifest.count > 0 || build->options->shard_count > 1 ? is_wanted : NULL, .user = build};
 	bp_error error;
 
 	if (source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count, &options, &build->sources,
@@ -96,21 +114,23 @@ static bool member_find(struct build *build, struct source_item *member)
 			if (build->stream_next == build->sources.stream_count)
 				return false;
 			const char *path = build->sources.streams[build->stream_next++];
-			if (container_open(path, CONTAINER_SEQUENTIAL, &build->stream, &error)) {
+			if (container_open(path, CONTAINER_SEQUENTIAL, build->options->charset, &build->stream, &error)) {
 				build->stream = NULL;
-				report_error(path, NULL, &error);
-				build->totals.damaged++;
+				damage_take(build, path, &error);
 				continue;
 			}
 		}
 		const char *path = build->sources.streams[build->stream_next - 1];
 		bool more = false;
 		bp_status status = source_stream_next(&build->sources, path, build->stream, member, &more, &error);
-		if (status == BP_ERROR_ARGUMENT) { /* an illegal or a second name */
-			build_stop(build, path, NULL, &error);
+		if (status && member->name) {
+			const size_t number = build->items.count;
+			if (items_add(&build->items, member, true, &error))
+				build_stop(build, NULL, NULL, &error);
+			else
+				outcomes_refuse(build, number, &error);
 		} else if (status) {
-			report_error(path, NULL, &error);
-			build->totals.damaged++;
+			damage_take(build, path, &error);
 		} else if (more) {
 			return true;
 		} else {

@@ -4,7 +4,7 @@
 
 #include "build_state.h"
 
-/* Fills sources and items. Reports what is skipped; stops the build at an illegal or double name. */
+/* Fills sources and items. Reports what is skipped or refused. */
 void build_inputs_collect(struct build *build);
 
 /*

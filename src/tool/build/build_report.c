@@ -26,33 +26,59 @@ static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX]
 	return count;
 }
 
+void report_unpacked(const char *label, const char *name, const bp_error *error, bool json)
+{
+	if (json) {
+		struct json line = json_begin(stdout, false);
+		char text[1024];
+		error_describe(error, text, sizeof text);
+		json_object(&line, NULL);
+		if (name)
+			json_string(&line, "name", name);
+		json_string(&line, "path", label);
+		json_string(&line, "error", text);
+		json_close(&line);
+		json_finish(&line);
+		fflush(stdout);
+	}
+	report_error(label, name, error);
+}
+
+void report_passed_over(const char *path, const char *reason, bool json, bool quiet)
+{
+	if (json) {
+		struct json line = json_begin(stdout, false);
+		json_object(&line, NULL);
+		json_string(&line, "path", path);
+		json_string(&line, "warning", reason);
+		json_close(&line);
+		json_finish(&line);
+	}
+	if (!quiet)
+		report_warning(path, NULL, "%s; skipped", reason);
+}
+
 static void material_json(const struct item *item, const char *label, const struct outcome *outcome)
 {
 	struct json json = json_begin(stdout, false);
 	json_object(&json, NULL);
 	json_string(&json, "name", item->source.name);
 	json_string(&json, "path", label);
-	if (outcome->error.status) {
-		char text[1024];
-		error_describe(&outcome->error, text, sizeof text);
-		json_string(&json, "error", text);
-	} else {
-		char warnings[WARNINGS_MAX][WARNING_BYTES];
-		int count = warnings_list(outcome, warnings);
-		json_integer(&json, "bytes", outcome->head.record_bytes);
-		json_number(&json, "seconds", outcome->seconds);
-		json_object(&json, "cpu_seconds");
-		for (int stage = 0; stage < STAGE_COUNT; stage++)
-			json_number(&json, stage_name((enum stage)stage), outcome->stage_seconds[stage]);
-		json_close(&json);
-		json_string(&json, "record", ORIGIN_NAMES[outcome->origin]);
-		json_string(&json, "profile", profile_name(outcome->head.profile));
-		facts_brief(&json, &outcome->head);
-		json_array(&json, "warnings");
-		for (int i = 0; i < count; i++)
-			json_string(&json, NULL, warnings[i]);
-		json_close(&json);
-	}
+	char warnings[WARNINGS_MAX][WARNING_BYTES];
+	int count = warnings_list(outcome, warnings);
+	json_integer(&json, "bytes", outcome->head.record_bytes);
+	json_number(&json, "seconds", outcome->seconds);
+	json_object(&json, "cpu_seconds");
+	for (int stage = 0; stage < STAGE_COUNT; stage++)
+		json_number(&json, stage_name((enum stage)stage), outcome->stage_seconds[stage]);
+	json_close(&json);
+	json_string(&json, "record", ORIGIN_NAMES[outcome->origin]);
+	json_string(&json, "profile", profile_name(outcome->head.profile));
+	facts_brief(&json, &outcome->head);
+	json_array(&json, "warnings");
+	for (int i = 0; i < count; i++)
+		json_string(&json, NULL, warnings[i]);
+	json_close(&json);
 	json_close(&json);
 	json_finish(&json);
 	fflush(stdout); /* a line per material as it is done: someone may be watching */
@@ -61,13 +87,13 @@ static void material_json(const struct item *item, const char *label, const stru
 void report_material(const struct item *item, const struct outcome *outcome, bool json, bool quiet)
 {
 	char label[ITEM_LABEL_BYTES];
-	item_label(item, label);
-	if (json)
-		material_json(item, label, outcome);
+	item_label(&item->source, label);
 	if (outcome->error.status) {
-		report_error(label, item->source.name, &outcome->error);
+		report_unpacked(label, item->source.name, &outcome->error, json);
 		return;
 	}
+	if (json)
+		material_json(item, label, outcome);
 	if (outcome->source.nonfinite_count > 0 && !quiet) { /* a fault of the file; the rest stands in --json */
 		char warnings[WARNINGS_MAX][WARNING_BYTES];
 		warnings_list(outcome, warnings);

@@ -32,8 +32,8 @@ struct outcome {
 struct build_totals {
 	uint64_t packed, refused; /* materials */
 	uint64_t missing;         /* materials that the manifest lists and no input has */
-	uint64_t damaged;         /* containers or members that could not be read */
-	uint64_t skipped;         /* paths that are no files; only a warning */
+	uint64_t damaged;         /* inputs that could not be read, or not to their end, or that hold no material */
+	uint64_t skipped;         /* what was passed over without a loss; only a warning */
 	uint64_t reused, kept;    /* of the packed ones, by their records' origin */
 	uint64_t source_bytes, archive_bytes;
 	double seconds;
@@ -44,6 +44,14 @@ static inline bool totals_whole(const struct build_totals *totals)
 {
 	return totals->refused == 0 && totals->missing == 0 && totals->damaged == 0;
 }
+
+/*
+ * An input, or (with a name) a material, that is not packed, and why: a message, and with --json a line. The one place that says so.
+ */
+void report_unpacked(const char *label, const char *name, const bp_error *error, bool json);
+
+/* Something that was passed over without a loss, as far as is known: a warning, and with --json a line. */
+void report_passed_over(const char *path, const char *reason, bool json, bool quiet);
 
 void report_material(const struct item *item, const struct outcome *outcome, bool json, bool quiet);
 

@@ -46,8 +46,7 @@ void items_free(struct items *items)
 	*items = (struct items){0};
 }
 
-void item_label(const struct item *item, char label[ITEM_LABEL_BYTES])
+void item_label(const struct source_item *source, char label[ITEM_LABEL_BYTES])
 {
-	snprintf(label, ITEM_LABEL_BYTES, "%s%s%s", item->source.path, item->source.member ? ": " : "",
-	         item->source.member ? item->source.member : "");
+	snprintf(label, ITEM_LABEL_BYTES, "%s%s%s", source->path, source->member ? ": " : "", source->member ? source->member : "");
 }

@@ -32,6 +32,6 @@ void items_free(struct items *items); /* a zeroed struct is allowed */
 
 /* "FILE" or "CONTAINER: MEMBER", for messages. */
 enum { ITEM_LABEL_BYTES = 1024 };
-void item_label(const struct item *item, char label[ITEM_LABEL_BYTES]);
+void item_label(const struct source_item *source, char label[ITEM_LABEL_BYTES]);
 
 #endif

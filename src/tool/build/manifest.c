@@ -1,6 +1,7 @@
 #include "manifest.h"
 
 #include "name.h"
+#include "merl/source_kind.h"
 #include "error.h"
 #include "merl/sha256.h"
 
@@ -97,6 +98,17 @@ static bool bytes_parse(const char *text, uint64_t *out)
 	return true;
 }
 
+/* The material that NAME.binary or FOLDER/NAME.binary stands for; anything else is a name. */
+static char *name_bare(char *cell)
+{
+	const size_t suffix = source_suffix_bytes(cell);
+	char *slash = strrchr(cell, '/');
+	if (!suffix)
+		return cell;
+	cell[strlen(cell) - suffix] = '\0';
+	return slash ? slash + 1 : cell;
+}
+
 static bp_status entry_parse(const struct parser *parser, char **cells, size_t count, struct manifest_entry *entry,
                              bp_error *error)
 {
@@ -105,7 +117,7 @@ static bp_status entry_parse(const struct parser *parser, char **cells, size_t c
 		char *cell = cells[i];
 		switch (parser->columns[i]) {
 		case COLUMN_NAME:
-			entry->name = cell;
+			entry->name = name_bare(cell);
 			break;
 		case COLUMN_BYTES:
 			if (*cell && !bytes_parse(cell, &entry->bytes))
@@ -156,6 +168,12 @@ bp_status manifest_parse(char *text, size_t bytes, struct manifest *out, bp_erro
 	size_t room = 0;
 	bp_status status = BP_OK;
 
+	if (bytes >= 2 && (!memcmp(text, "\xFF\xFE", 2) || !memcmp(text, "\xFE\xFF", 2))) {
+		status = error_set(error, BP_ERROR_BAD_INPUT, 0, "this is UTF-16; save it as UTF-8");
+		goto out;
+	}
+	if (bytes >= 3 && !memcmp(text, "\xEF\xBB\xBF", 3))
+		parser.next += 3; /* a byte order mark */
 	const char *nul = memchr(text, '\0', bytes);
 	if (nul) {
 		status = error_set(error, BP_ERROR_BAD_INPUT, (uint64_t)(nul - text), "a NUL byte: this is not a text file");
@@ -237,9 +255,20 @@ out:
 
 void manifest_free(struct manifest *manifest)
 {
+	normal_forms_free(&manifest->forms);
 	free(manifest->entries);
 	free(manifest->text);
 	*manifest = (struct manifest){0};
+}
+
+void manifest_note_unlisted(struct manifest *manifest, const char *name)
+{
+	size_t number;
+	for (size_t n = 0; n < manifest->count && !manifest->forms_made; n++)
+		normal_forms_add(&manifest->forms, manifest->entries[n].name, n);
+	manifest->forms_made = true;
+	if (normal_forms_find(&manifest->forms, name, &number))
+		manifest->entries[number].other_form = true;
 }
 
 struct manifest_entry *manifest_find(const struct manifest *manifest, const char *name)

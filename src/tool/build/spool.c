@@ -1,35 +1,18 @@
 #include "spool.h"
 
 #include "error.h"
+#include "output_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 bp_status spool_open(const char *output_path, struct spool *out, bp_error *error)
 {
-	const char *slash = strrchr(output_path, '/');
-	size_t folder_bytes = slash ? (size_t)(slash - output_path) + 1 : 0; /* with the slash */
-	static const char pattern[] = ".brdfpack-XXXXXX";
-	char *path = malloc(folder_bytes + sizeof "./" + sizeof pattern);
-
-	if (!path)
-		return error_memory(error, folder_bytes);
-	memcpy(path, output_path, folder_bytes);
-	strcpy(path + folder_bytes, folder_bytes ? "" : "./");
-	int fd = open(path, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-	if (fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) { /* a file system or kernel without nameless files */
-		strcat(path, pattern);
-		fd = mkostemp(path, O_CLOEXEC);
-		if (fd >= 0)
-			unlink(path);
-	}
-	free(path);
-	if (fd < 0)
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot write into its folder: %s", strerror(errno));
+	int fd;
+	bp_status status = output_scratch_open(output_path, &fd, error);
+	if (status)
+		return status;
 	*out = (struct spool){.fd = fd};
 	return BP_OK;
 }

@@ -6,11 +6,12 @@
 #include "tool/report.h"
 #include "tool/workers.h"
 
+#include <iconv.h>
 #include <stdlib.h>
 
 enum { BUDGET_LEAST = 1000, BUDGET_MOST = 4000000, BUDGET_USUAL = 60400, EFFORT_USUAL = 5 };
 enum { OPTION_PROFILE = OPTION_LONG, OPTION_BUDGET, OPTION_MAX_ERROR, OPTION_EFFORT, OPTION_MANIFEST, OPTION_STRICT, OPTION_UPDATE,
-       OPTION_JSON, OPTION_ANY_LATTICE, OPTION_SHARD };
+       OPTION_JSON, OPTION_ANY_LATTICE, OPTION_SHARD, OPTION_FORCE, OPTION_CHARSET };
 
 enum { SHARDS_MOST = 65536 };
 
@@ -29,6 +30,15 @@ static bool shard_parse(const char *text, struct build_options *options)
 	return !*end && k >= 1 && k <= n && n <= SHARDS_MOST;
 }
 
+static bool charset_known(const char *name)
+{
+	const iconv_t conversion = iconv_open("UTF-8", name);
+	if (conversion == (iconv_t)-1)
+		return false;
+	iconv_close(conversion);
+	return true;
+}
+
 static int build_main(const struct command *self, int argc, char **argv)
 {
 	static const struct option names[] = {
@@ -43,6 +53,8 @@ static int build_main(const struct command *self, int argc, char **argv)
 		{"strict", no_argument, NULL, OPTION_STRICT},
 		{"update", no_argument, NULL, OPTION_UPDATE},
 		{"json", no_argument, NULL, OPTION_JSON},
+		{"force", no_argument, NULL, OPTION_FORCE},
+		{"charset", required_argument, NULL, OPTION_CHARSET},
 		{"shard", required_argument, NULL, OPTION_SHARD},
 		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
 		{0},
@@ -62,6 +74,12 @@ static int build_main(const struct command *self, int argc, char **argv)
 		case OPTION_MANIFEST: options.manifest = optarg; break;
 		case OPTION_STRICT: options.strict = true; break;
 		case OPTION_UPDATE: options.update = true; break;
+		case OPTION_FORCE: options.force = true; break;
+		case OPTION_CHARSET:
+			if (!charset_known(optarg))
+				return report_usage(self, "--charset: no character set is called '%s'; `iconv -l` lists them", optarg);
+			options.charset = optarg;
+			break;
 		case OPTION_JSON: options.json = true; break;
 		case OPTION_ANY_LATTICE: options.any_lattice = true; break;
 		case 'j':
@@ -119,6 +137,7 @@ const struct command command_build = {
 		"bottom), or a tar or zip, plain or compressed. A material's name is its file's stem.\n"
 		"\n"
 		"  -o, --output OUT.bpk   the archive; an older one is replaced only by a whole one\n"
+		"      --force            replace what is there also when it is an input, or no archive\n"
 		"  -j, --jobs N           worker processes (1 to 256; default: the usable cores);\n"
 		"                         the archive's bytes do not depend on it\n"
 		"      --profile NAME     'spectral' (unless told otherwise), or 'paper': the paper's method\n"
@@ -128,6 +147,8 @@ const struct command command_build = {
 		"      --effort N         1 (fast) to 9 (small); default 5\n"
 		"      --manifest FILE    only the listed materials; where the list has sizes and SHA-256,\n"
 		"                         a file that differs is refused\n"
+		"      --charset NAME     the character set of names in tars and zips that are not UTF-8\n"
+		"                         (CP437, SHIFT_JIS, ISO-8859-1 ...)\n"
 		"      --strict           write no archive when a material is refused or missing\n"
 		"      --update           take the records of unchanged files (the same SHA-256, options and\n"
 		"                         codec) from the OUT.bpk that is there; what the inputs no longer\n"
@@ -139,5 +160,5 @@ const struct command command_build = {
 		"      --any-lattice      accept files of other extents than MERL's 90 90 180 (for tests)\n"
 		"  -h, --help             this text\n"
 		"\n"
-		"A file that cannot be packed is refused, the others are packed, and the exit code is 1.\n",
+		"What cannot be packed is named with the reason, the others are packed, and the exit code is 1.\n",
 };

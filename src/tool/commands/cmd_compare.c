@@ -3,6 +3,7 @@
 #include "tool/compare/compare.h"
 #include "tool/interrupt.h"
 #include "tool/options.h"
+#include "tool/output_check.h"
 #include "tool/report.h"
 #include "tool/selection.h"
 
@@ -21,6 +22,7 @@ enum { COMPARE_SIZE_MAX = 512 };
 struct compare {
 	const char *archive_path, *folder, *images;
 	unsigned workers;
+	bool force;
 	struct compare_report report;
 	struct selection selection;
 	struct source_list sources;
@@ -110,16 +112,37 @@ static bp_status images_prepare(struct compare *compare, bp_error *error)
 	return BP_OK;
 }
 
+static char *image_path(const struct compare *compare, const char *name, int light)
+{
+	char *path = NULL;
+	return asprintf(&path, "%s/%s-%s.png", compare->images, name, lighting_name((enum lighting)light)) < 0 ? NULL : path;
+}
+
+/* Names every picture that is there and not ours to replace; true when there is none. */
+static bool images_check(const struct compare *compare)
+{
+	struct stat about;
+	bool all = true;
+	for (size_t n = 0; n < compare->count; n++)
+		for (int l = 0; l < LIGHTING_COUNT; l++) {
+			char *path = compare->report.lightings & 1u << l ? image_path(compare, compare->items[n].entry.name, l) : NULL;
+			if (path && lstat(path, &about) == 0)
+				all &= output_check(path, OUTPUT_KIND_PICTURE, compare->force, &compare->archive_path, 1);
+			free(path);
+		}
+	return all;
+}
+
 static bp_status images_write(const struct compare *compare, const struct compare_item *item, const uint8_t *png,
                               bp_error *error)
 {
 	bp_status status = BP_OK;
 	for (int l = 0; l < LIGHTING_COUNT && status == BP_OK; l++) {
 		uint32_t bytes = item->result.png_bytes[l];
-		char *path;
 		if (!bytes)
 			continue;
-		if (asprintf(&path, "%s/%s-%s.png", compare->images, item->entry.name, lighting_name((enum lighting)l)) < 0)
+		char *path = image_path(compare, item->entry.name, l);
+		if (!path)
 			return error_memory(error, 512);
 		status = file_write_whole(path, png, bytes, error);
 		free(path);
@@ -231,6 +254,8 @@ static int materials_compare(struct compare *compare)
 	bp_status status = items_read(compare, &error);
 	if (status == BP_OK && compare->images)
 		status = images_prepare(compare, &error);
+	if (status == BP_OK && compare->images && !images_check(compare))
+		return EXIT_FAILED;
 	if (status == BP_OK)
 		status = sources_find(compare, &error);
 	if (status == BP_OK && compare->failed == compare->count)
@@ -250,10 +275,10 @@ static int materials_compare(struct compare *compare)
 
 static int compare_main(const struct command *self, int argc, char **argv)
 {
-	enum { LIGHT = OPTION_LONG, SIZE, JSON, IMAGES };
+	enum { LIGHT = OPTION_LONG, SIZE, JSON, IMAGES, FORCE };
 	static const struct option names[] = {{"light", required_argument, NULL, LIGHT}, {"size", required_argument, NULL, SIZE},
 	                                      {"json", no_argument, NULL, JSON}, {"images", required_argument, NULL, IMAGES},
-	                                      {"jobs", required_argument, NULL, 'j'}, {0}};
+	                                      {"jobs", required_argument, NULL, 'j'}, {"force", no_argument, NULL, FORCE}, {0}};
 	struct compare compare = {.workers = cores_usable(), .report.lightings = LIGHTINGS_ALL};
 	enum lighting lighting;
 	int64_t jobs, size = SPHERE_SIZE;
@@ -269,6 +294,9 @@ static int compare_main(const struct command *self, int argc, char **argv)
 		case SIZE:
 			if (!option_integer(self, "--size", optarg, 1, COMPARE_SIZE_MAX, &size))
 				return EXIT_USAGE;
+			break;
+		case FORCE:
+			compare.force = true;
 			break;
 		case JSON:
 			compare.report.json = true;
@@ -328,7 +356,9 @@ const struct command command_compare = {
 	         "\n"
 	         "      --light=NAME   key, env or point alone (all three)\n"
 	         "      --size=N       pixels of the sphere, 1 to 512 (160: what published figures are made with)\n"
-	         "      --images=DIR   also write DIR/NAME-LIGHT.png: measured, decoded, difference x10\n"
+	         "      --images=DIR   also write DIR/NAME-LIGHT.png: measured, decoded, difference x10;\n"
+	         "                     older ones that brdfpack drew are replaced\n"
+	         "      --force        replace whatever is there\n"
 	         "      --json         one JSON object per material, then a summary object\n"
 	         "  -j, --jobs=N       worker processes (one per usable core)\n"
 	         "  -h, --help         this text\n",

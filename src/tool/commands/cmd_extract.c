@@ -64,7 +64,7 @@ static bp_status record_read(const struct selection *selection, const struct ind
 }
 
 static bp_status merl_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
-                            const char *path, bool plain, struct table *table, bp_error *error)
+                            const char *path, enum output_rule rule, bool plain, struct table *table, bp_error *error)
 {
 	struct model *model = NULL;
 	uint8_t *record = NULL;
@@ -79,13 +79,13 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 	if (!status)
 		status = model_expand(model, 0, &table->expansion, error);
 	if (!status)
-		status = lattice_write_path(path, &table->expansion, table->below, record, record ? head->record_bytes : 0, error);
+		status = lattice_write_path(path, rule, &table->expansion, table->below, record, record ? head->record_bytes : 0, error);
 	model_free(model);
 	free(record);
 	return status;
 }
 
-static bp_status json_write(const struct record_head *head, const char *path, bp_error *error)
+static bp_status json_write(const struct record_head *head, const char *path, enum output_rule rule, bp_error *error)
 {
 	struct output_file file;
 	struct byte_buffer text = {0};
@@ -101,7 +101,7 @@ static bp_status json_write(const struct record_head *head, const char *path, bp
 	json_close(&json);
 	json_finish(&json);
 	fclose(memory);
-	status = text.failed ? error_memory(error, text.count) : output_file_open(path, &file, error);
+	status = text.failed ? error_memory(error, text.count) : output_file_open(path, rule, &file, error);
 	if (!status) {
 		status = output_file_write(&file, text.bytes, text.count, error);
 		if (!status)
@@ -113,37 +113,54 @@ static bp_status json_write(const struct record_head *head, const char *path, bp
 	return status;
 }
 
-/* One material into FOLDER/NAME.binary or .json. Names hold no '/', so it cannot land anywhere else. */
-static bool material_extract(struct selection *selection, uint64_t n, const char *folder, enum form form, struct table *table)
+struct extraction {
+	struct selection selection;
+	enum form form;
+	struct table table;
+	struct index_entry entry; /* of the material that was asked for last */
+};
+
+/* Names hold no '/', so a file cannot land in another folder. */
+static const char *material_name(void *user, uint64_t n)
 {
-	struct index_entry entry;
+	struct extraction *extraction = user;
+	extraction->entry = (struct index_entry){.name = ""};
+	return selection_entry(&extraction->selection, n, &extraction->entry, NULL) ? NULL : extraction->entry.name;
+}
+
+static bp_status material_write(void *user, uint64_t n, const char *path, enum output_rule rule, bp_error *error)
+{
+	struct extraction *extraction = user;
+	struct selection *selection = &extraction->selection;
 	struct record_head head;
-	bp_error error;
-	bp_status status;
-	char *path;
-	if (!selection_head(selection, n, &entry, &head))
-		return false;
-	path = folder_path(folder, entry.name, form == FORM_JSON ? "json" : "binary");
-	if (!path)
-		status = error_memory(&error, strlen(folder));
-	else
-		status = form == FORM_JSON ? json_write(&head, path, &error) : merl_write(selection, &entry, &head, path, form == FORM_PLAIN, table, &error);
-	free(path);
+	extraction->entry = (struct index_entry){.name = ""};
+	bp_status status = selection_entry(selection, n, &extraction->entry, error);
+	if (!status)
+		status = archive_entry_head(selection->archive, &extraction->entry, &head, error);
 	if (status)
-		report_error(selection->path, entry.name, &error);
-	return !status;
+		return status;
+	if (extraction->form == FORM_JSON)
+		return json_write(&head, path, rule, error);
+	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->table, error);
+}
+
+static void material_failed(void *user, uint64_t n, const bp_error *error)
+{
+	const struct extraction *extraction = user;
+	(void)n;
+	report_error(extraction->selection.path, extraction->entry.name[0] ? extraction->entry.name : NULL, error);
 }
 
 static int extract_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_ANY_LATTICE };
+	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_FORCE, OPTION_ANY_LATTICE };
 	static const struct option names[] = {
 		{"directory", required_argument, NULL, 'C'}, {"format", required_argument, NULL, OPTION_FORMAT},
-		{"plain", no_argument, NULL, OPTION_PLAIN}, {"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE}, {0}};
+		{"plain", no_argument, NULL, OPTION_PLAIN}, {"force", no_argument, NULL, OPTION_FORCE},
+		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE}, {0}};
 	const char *folder = ".";
-	struct selection selection;
-	struct table table = {0};
-	bool json = false, plain = false, whole;
+	struct extraction extraction = {.form = FORM_MERL};
+	bool json = false, plain = false, force = false;
 	int option;
 
 	while ((option = options_next(self, argc, argv, "C:", names)) >= 0) {
@@ -151,8 +168,10 @@ static int extract_main(const struct command *self, int argc, char **argv)
 			folder = optarg;
 		else if (option == OPTION_PLAIN)
 			plain = true;
+		else if (option == OPTION_FORCE)
+			force = true;
 		else if (option == OPTION_ANY_LATTICE)
-			table.any_lattice = true;
+			extraction.table.any_lattice = true;
 		else if (!strcmp(optarg, "json") || !strcmp(optarg, "merl"))
 			json = optarg[0] == 'j';
 		else
@@ -162,18 +181,15 @@ static int extract_main(const struct command *self, int argc, char **argv)
 		return options_exit_code(option);
 	if (json && plain)
 		return report_usage(self, "--plain is about MERL files, --format json writes none");
-	int opened = selection_from(&selection, self, argv + optind, argc - optind);
+	int opened = selection_from(&extraction.selection, self, argv + optind, argc - optind);
 	if (opened != EXIT_OK)
 		return opened;
-	whole = !selection.incomplete;
-	if (selection.count > 0 && !folder_create(folder)) {
-		selection_close(&selection);
-		return EXIT_FAILED;
-	}
-	for (uint64_t i = 0; i < selection.count; i++)
-		whole &= material_extract(&selection, i, folder, json ? FORM_JSON : plain ? FORM_PLAIN : FORM_MERL, &table);
-	table_free(&table);
-	selection_close(&selection);
+	extraction.form = json ? FORM_JSON : plain ? FORM_PLAIN : FORM_MERL;
+	const struct folder_set set = {.folder = folder, .suffix = json ? "json" : "binary", .count = extraction.selection.count, .force = force,
+	                               .user = &extraction, .name = material_name, .write = material_write, .failed = material_failed};
+	bool whole = folder_write(&set) && !extraction.selection.incomplete;
+	table_free(&extraction.table);
+	selection_close(&extraction.selection);
 	return whole ? EXIT_OK : EXIT_FAILED;
 }
 
@@ -182,7 +198,8 @@ const struct command command_extract = {
 	.run = extract_main,
 	.description = "write materials as MERL files, or their parameters as JSON",
 	.usage = "Usage: brdfpack extract [-C DIR] [OPTION]... ARCHIVE [NAME]...\n"
-	         "Writes DIR/NAME.binary for the named materials, or for all. Cells wholly below the horizon\n"
+	         "Writes DIR/NAME.binary for the named materials, or for all. When a file of one of these names\n"
+	         "is there and differs, nothing is written. Cells wholly below the horizon\n"
 	         "are negative, all others hold the model's value. The negative ones carry the material's\n"
 	         "record, which a build with the same profile and a budget that holds it takes over as it\n"
 	         "is, unless a value was changed.\n"
@@ -190,6 +207,7 @@ const struct command command_extract = {
 	         "  -C, --directory DIR  where to (default: here); created when it is missing\n"
 	         "      --format merl    MERL files (the default)\n"
 	         "      --format json    DIR/NAME.json with the parameters instead\n"
+	         "      --force          replace files that are there\n"
 	         "      --any-lattice    also tables of more than twice as many cells as MERL's\n"
 	         "      --plain          no record: every cell below the horizon is -1\n"
 	         "  -h, --help           this text\n",

@@ -1,6 +1,7 @@
 #include "tool/command.h"
 #include "tool/interrupt.h"
 #include "tool/options.h"
+#include "tool/output_check.h"
 #include "tool/report.h"
 
 #include "archive/merge.h"
@@ -43,6 +44,8 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 		report_text("%s: interrupted; not written", options->output);
 		return 128 + interrupt_signal();
 	}
+	if (!quiet)
+		report_remark(options->output, &error);
 	if (!quiet) {
 		printf("%s: %" PRIu64 " material%s", options->output, totals.copied, totals.copied == 1 ? "" : "s");
 		if (totals.replaced > 0)
@@ -54,14 +57,15 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 
 static int merge_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_REPLACE = OPTION_LONG, OPTION_EXPECT };
+	enum { OPTION_REPLACE = OPTION_LONG, OPTION_EXPECT, OPTION_FORCE };
 	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
 	                                      {"quiet", no_argument, NULL, 'q'},
 	                                      {"replace", no_argument, NULL, OPTION_REPLACE},
 	                                      {"expect", required_argument, NULL, OPTION_EXPECT},
+	                                      {"force", no_argument, NULL, OPTION_FORCE},
 	                                      {0}};
 	struct copy_options options = {.stop = stop};
-	bool quiet = false;
+	bool quiet = false, force = false;
 	int64_t expected = 0;
 	int option, result = EXIT_FAILED;
 	bp_error error;
@@ -72,6 +76,7 @@ static int merge_main(const struct command *self, int argc, char **argv)
 		if (option == OPTION_EXPECT && !option_integer(self, "--expect", optarg, 1, 65536, &expected))
 			return EXIT_USAGE;
 		options.replace |= option == OPTION_REPLACE;
+		force |= option == OPTION_FORCE;
 		quiet |= option == 'q';
 	}
 	if (option != OPTIONS_END)
@@ -86,6 +91,8 @@ static int merge_main(const struct command *self, int argc, char **argv)
 		report_text("%s: not written: %" PRId64 " shards are expected, %zu archive%s given", options.output, expected, count, count == 1 ? " is" : "s are");
 		return EXIT_FAILED;
 	}
+	if (!output_check(options.output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, count))
+		return EXIT_FAILED;
 	options.alike = expected != 0;
 	files_allow(count);
 	bp_archive **archives = calloc(count, sizeof *archives);
@@ -115,7 +122,8 @@ const struct command command_merge = {
 	         "Joins archives; records are copied byte for byte. A name that stands in two of them is\n"
 	         "refused, and nothing is written.\n"
 	         "\n"
-	         "  -o, --output OUT.bpk  the new archive; it may be one of the inputs\n"
+	         "  -o, --output OUT.bpk  the new archive; replaces an older one that is none of the inputs\n"
+	         "      --force           also one of the inputs, or a file that is no archive\n"
 	         "      --expect N        the archives are the N shards of one build (build --shard): refuse\n"
 	         "                        another number, and records made with other options or versions\n"
 	         "      --replace         of a name that several archives have, take the last one's\n"

@@ -1,10 +1,12 @@
 #include "tool/command.h"
 #include "tool/options.h"
+#include "tool/output_check.h"
 #include "tool/report.h"
 
 #include "archive/recover.h"
 
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 static void loss_report(void *user, const char *material, const bp_error *why)
@@ -14,24 +16,32 @@ static void loss_report(void *user, const char *material, const bp_error *why)
 
 static int recover_main(const struct command *self, int argc, char **argv)
 {
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {0}};
+	enum { OPTION_FORCE = OPTION_LONG };
+	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {"force", no_argument, NULL, OPTION_FORCE}, {0}};
 	const char *output = NULL;
 	struct recovery recovery = {0};
+	bool force = false;
 	bp_error error;
 	int option;
 
-	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
-		output = optarg;
+	while ((option = options_next(self, argc, argv, "o:", names)) >= 0) {
+		if (option == 'o')
+			output = optarg;
+		force |= option == OPTION_FORCE;
+	}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
 	if (!output)
 		return report_usage(self, "-o OUT.bpk is missing");
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no archive" : "more than one archive");
+	if (!output_check(output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, 1))
+		return EXIT_FAILED;
 	if (archive_recover(argv[optind], output, loss_report, argv[optind], &recovery, &error) != BP_OK) {
 		report_error(NULL, NULL, &error);
 		return EXIT_FAILED;
 	}
+	report_remark(output, &error);
 	printf("%s: %" PRIu64 " saved, %" PRIu64 " lost\n", output, recovery.saved, recovery.lost);
 	return recovery.lost ? EXIT_FAILED : EXIT_OK;
 }
@@ -45,6 +55,7 @@ const struct command command_recover = {
 	         "checksums hold into a new archive, unchanged. Says what was lost, as far as a record's head or the\n"
 	         "index tells; exit code 1 when anything was.\n"
 	         "\n"
-	         "  -o, --output FILE  the new archive; not the damaged one\n"
+	         "  -o, --output FILE  the new archive; replaces an older one, but not the damaged one\n"
+	         "      --force        also the damaged one, or a file that is no archive\n"
 	         "  -h, --help         this text\n",
 };

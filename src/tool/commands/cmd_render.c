@@ -1,6 +1,7 @@
 #include "tool/command.h"
 #include "tool/material.h"
 #include "tool/options.h"
+#include "tool/output_check.h"
 #include "tool/report.h"
 
 #include "render/picture.h"
@@ -12,7 +13,7 @@ struct render_options {
 	enum lighting lighting;
 	uint32_t size;
 	const char *output;
-	bool pfm;
+	bool pfm, force;
 };
 
 /* The material's table as a renderer sees it: cells that nobody measured are black. */
@@ -70,9 +71,9 @@ static int material_render(const struct render_options *options, const struct ma
 
 static int render_main(const struct command *self, int argc, char **argv)
 {
-	enum { LIGHT = OPTION_LONG, SIZE };
+	enum { LIGHT = OPTION_LONG, SIZE, FORCE };
 	static const struct option names[] = {{"light", required_argument, NULL, LIGHT}, {"size", required_argument, NULL, SIZE},
-	                                      {"output", required_argument, NULL, 'o'}, {0}};
+	                                      {"output", required_argument, NULL, 'o'}, {"force", no_argument, NULL, FORCE}, {0}};
 	struct render_options options = {.lighting = LIGHTING_KEY, .size = SPHERE_SIZE};
 	struct material material;
 	int64_t size;
@@ -82,6 +83,9 @@ static int render_main(const struct command *self, int argc, char **argv)
 		switch (option) {
 		case 'o':
 			options.output = optarg;
+			break;
+		case FORCE:
+			options.force = true;
 			break;
 		case LIGHT:
 			if (!lighting_find(optarg, &options.lighting))
@@ -97,6 +101,8 @@ static int render_main(const struct command *self, int argc, char **argv)
 		return options_exit_code(option);
 	if (!option_picture(self, options.output, ".pfm", &options.pfm))
 		return EXIT_USAGE;
+	if (optind < argc && !output_check(options.output, OUTPUT_KIND_PICTURE, options.force, (const char *const *)argv + optind, 1))
+		return EXIT_FAILED;
 	int code = material_load(self, argv + optind, argc - optind, &material);
 	if (code != EXIT_OK)
 		return code;
@@ -114,7 +120,8 @@ const struct command command_render = {
 	         "Draws a sphere under fixed lights. A .png file is exposed so that the 90th percentile of the covered\n"
 	         "pixels becomes 0.9, in sRGB; a .pfm file holds the linear radiances as float.\n"
 	         "\n"
-	         "  -o, --output=FILE  the image to write\n"
+	         "  -o, --output=FILE  the image to write; an older .png that brdfpack drew is replaced\n"
+	         "      --force        replace whatever is there\n"
 	         "      --light=NAME   key: 29 directional lights (default); env: a sky of 400 directions;\n"
 	         "                     point: four point lights\n"
 	         "      --size=N       width and height in pixels, 1 to 4096 (160)\n"

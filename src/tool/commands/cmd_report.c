@@ -1,6 +1,7 @@
 #include "tool/command.h"
 #include "tool/cores.h"
 #include "tool/options.h"
+#include "tool/output_check.h"
 #include "tool/report.h"
 #include "tool/report_page/page.h"
 #include "tool/workers.h"
@@ -9,14 +10,15 @@
 
 static int report_main(const struct command *self, int argc, char **argv)
 {
-	enum { LIGHT = OPTION_LONG, MEASURED, EMBED };
+	enum { LIGHT = OPTION_LONG, MEASURED, EMBED, FORCE };
 	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {"measured", required_argument, NULL, MEASURED},
 	                                      {"light", required_argument, NULL, LIGHT}, {"embed", no_argument, NULL, EMBED},
-	                                      {"jobs", required_argument, NULL, 'j'}, {"quiet", no_argument, NULL, 'q'}, {0}};
+	                                      {"jobs", required_argument, NULL, 'j'}, {"quiet", no_argument, NULL, 'q'}, {"force", no_argument, NULL, FORCE}, {0}};
 	struct page_options options = {.workers = cores_usable(), .lightings = (1u << LIGHTING_COUNT) - 1};
 	struct selection selection;
 	enum lighting lighting;
 	int64_t jobs;
+	bool force = false;
 	int option;
 
 	while ((option = options_next(self, argc, argv, "o:j:q", names)) >= 0)
@@ -35,6 +37,9 @@ static int report_main(const struct command *self, int argc, char **argv)
 		case EMBED:
 			options.embed = true;
 			break;
+		case FORCE:
+			force = true;
+			break;
 		case 'q':
 			options.quiet = true;
 			break;
@@ -50,6 +55,8 @@ static int report_main(const struct command *self, int argc, char **argv)
 		return report_usage(self, "no output: -o OUT.html is missing");
 	if (!text_ends_with(options.output, ".html"))
 		return report_usage(self, "-o: '%s' does not end in .html", options.output);
+	if (optind < argc && !output_check(options.output, OUTPUT_KIND_PAGE, force, (const char *const *)argv + optind, 1))
+		return EXIT_FAILED;
 	int code = selection_from(&selection, self, argv + optind, argc - optind);
 	if (code != EXIT_OK)
 		return code;
@@ -71,10 +78,11 @@ const struct command command_report = {
 	         "beside the page on a web server: spheres to light and turn. A material that is damaged is named, the others shown,\n"
 	         "and the exit code is 1.\n"
 	         "\n"
-	         "  -o, --output=FILE    the page to write\n"
+	         "  -o, --output=FILE    the page to write; an older one that brdfpack made is replaced\n"
 	         "      --measured=DIR   compare with the MERL files of the same names in this folder (or zip)\n"
 	         "      --light=NAME     key, env or point alone (all three)\n"
 	         "      --embed          put the archive's bytes into the page, so that the viewer works from a file\n"
+	         "      --force          replace whatever is there\n"
 	         "  -j, --jobs=N         worker processes (one per usable core)\n"
 	         "  -q, --quiet          no progress\n"
 	         "  -h, --help           this text\n",

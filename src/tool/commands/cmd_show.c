@@ -2,6 +2,7 @@
 #include "tool/facts.h"
 #include "tool/material.h"
 #include "tool/options.h"
+#include "tool/output_check.h"
 #include "tool/report.h"
 
 #include "error.h"
@@ -17,7 +18,7 @@ enum { BUDGET_BYTES = 60400, EFFORT = 5 };
 
 struct show_options {
 	const char *output, *reference;
-	bool svg;
+	bool svg, force;
 	struct fit_options fit;
 	int slice_count;
 	double theta_h[FIGURE_SLICES_MAX];
@@ -159,10 +160,10 @@ static int show_draw(struct show *show, const struct show_options *options)
 
 static int show_main(const struct command *self, int argc, char **argv)
 {
-	enum { THETA_H = OPTION_LONG, MEASURED, PROFILE };
+	enum { THETA_H = OPTION_LONG, MEASURED, PROFILE, FORCE };
 	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {"theta-h", required_argument, NULL, THETA_H},
 	                                      {"measured", required_argument, NULL, MEASURED},
-	                                      {"profile", required_argument, NULL, PROFILE}, {0}};
+	                                      {"profile", required_argument, NULL, PROFILE}, {"force", no_argument, NULL, FORCE}, {0}};
 	struct show_options options = {.slice_count = 5, .theta_h = {5, 20, 40, 60, 80},
 	                               .fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_BYTES, .effort = EFFORT}};
 	int option;
@@ -171,6 +172,9 @@ static int show_main(const struct command *self, int argc, char **argv)
 		switch (option) {
 		case 'o':
 			options.output = optarg;
+			break;
+		case FORCE:
+			options.force = true;
 			break;
 		case THETA_H:
 			if (!angles_parse(self, optarg, &options))
@@ -188,6 +192,9 @@ static int show_main(const struct command *self, int argc, char **argv)
 		return options_exit_code(option);
 	if (!option_picture(self, options.output, ".svg", &options.svg))
 		return EXIT_USAGE;
+	const char *const inputs[2] = {optind < argc ? argv[optind] : NULL, options.reference};
+	if (inputs[0] && !output_check(options.output, OUTPUT_KIND_PICTURE, options.force, inputs, 2))
+		return EXIT_FAILED;
 	struct show *show = calloc(1, sizeof *show);
 	if (!show) {
 		report_text("out of memory");
@@ -214,7 +221,8 @@ const struct command command_show = {
 	         "densities of theta_d and phi_d for some theta_h side by side: 1 (white) everywhere means that the two are\n"
 	         "independent given theta_h. Grey cells were not measured. A MERL file is fitted for the purpose.\n"
 	         "\n"
-	         "  -o, --output=FILE    the picture to write\n"
+	         "  -o, --output=FILE    the picture to write; an older one that brdfpack drew is replaced\n"
+	         "      --force          replace whatever is there\n"
 	         "      --measured=PATH  the measured file of an archived material, or its folder; without it only the\n"
 	         "                       decoded densities are drawn\n"
 	         "      --theta-h=LIST   up to 12 angles in degrees (5,20,40,60,80)\n"

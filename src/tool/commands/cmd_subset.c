@@ -1,12 +1,16 @@
 #include "tool/command.h"
 #include "tool/interrupt.h"
+#include "tool/material_name.h"
 #include "tool/options.h"
+#include "tool/output_check.h"
 #include "tool/report.h"
 #include "tool/scene.h"
 #include "tool/selection.h"
 
 #include "archive/merge.h"
 #include "error.h"
+#include "merl/normal_form.h"
+#include "merl/source_kind.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -15,9 +19,11 @@
 struct subset {
 	const char *path; /* of the archive */
 	struct copy_options copy;
-	bool quiet;
+	bool quiet, force;
+	bool lacking; /* a scene names a material that the archive has not, or has in another Unicode form */
 	struct scene_words words;
 	size_t scene_count;
+	const char **inputs; /* the archive, then the scenes: for the output's check */
 	bp_archive *archive;
 	uint64_t *index; /* of the materials wanted, ascending; NULL: all */
 	uint64_t count;
@@ -34,20 +40,49 @@ static int ascending(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Adds the materials whose names are among the scenes' words. */
+/* Names of scenes that are there in another Unicode form only. */
+static void other_forms_report(struct subset *subset, struct selection *selection, struct normal_forms *forms)
+{
+	struct index_page leaf = {0};
+	struct index_entry entry;
+	size_t number;
+	for (uint64_t n = 0; forms->count > 0 && n < bp_archive_count(selection->archive); n++) {
+		if (archive_entry(selection->archive, n, &leaf, &entry, NULL))
+			return; /* copying will say why */
+		if (normal_forms_find(forms, entry.name, &number)) {
+			selection_missing_report(selection, subset->words.word[number].text);
+			subset->lacking = true;
+		}
+	}
+}
+
+/* Adds the materials whose names, or measured files, are among the scenes' words. Files that are not there are told. */
 static bool scenes_find(struct subset *subset, struct selection *selection)
 {
+	struct normal_forms forms = {0};
+	char name[BP_NAME_BYTES_MAX + 1];
 	bp_error error;
+	bp_status status = BP_OK;
 	for (size_t n = 0; n < subset->words.count; n++) {
-		bp_status status = bp_archive_find(selection->archive, subset->words.word[n], &subset->index[subset->count], &error);
+		const struct scene_word *word = &subset->words.word[n];
+		status = material_name_find(selection->archive, word->text, &subset->index[subset->count], &error);
 		if (!status) {
 			subset->count++;
 		} else if (status != BP_ERROR_NOT_FOUND) {
-			report_error(subset->path, subset->words.word[n], &error);
-			return false;
+			report_error(subset->path, word->text, &error);
+			break;
+		} else if (source_suffix_bytes(word->text) && !word->spare) {
+			selection_missing_report(selection, word->text);
+			subset->lacking = true;
+		} else if (!word->spare && material_name_bare(word->text, name)) {
+			normal_forms_add(&forms, name, n);
 		}
+		status = BP_OK;
 	}
-	return true;
+	if (!status)
+		other_forms_report(subset, selection, &forms);
+	normal_forms_free(&forms);
+	return !status;
 }
 
 /* Which materials: those named and those the scenes name, each once, in the archive's order. */
@@ -98,58 +133,76 @@ static int subset_write(struct subset *subset)
 		return 128 + interrupt_signal();
 	}
 	if (!subset->quiet)
+		report_remark(subset->copy.output, &error);
+	if (!subset->quiet)
 		printf("%s: %" PRIu64 " material%s, %" PRIu64 " of %" PRIu64 " bytes of their records\n", subset->copy.output, totals.copied,
 		       totals.copied == 1 ? "" : "s", totals.bytes_to, totals.bytes_from);
-	return EXIT_OK;
+	return subset->lacking ? EXIT_FAILED : EXIT_OK;
+}
+
+/* With everything that is allocated in *subset; the caller frees it. */
+static int subset_run(struct subset *subset, char **names, int name_count)
+{
+	struct selection selection;
+	int result = EXIT_FAILED;
+	bp_error error;
+
+	if (!output_check(subset->copy.output, OUTPUT_KIND_ARCHIVE, subset->force, subset->inputs, 1 + subset->scene_count))
+		return EXIT_FAILED;
+	for (size_t n = 1; n <= subset->scene_count; n++)
+		if (scene_words_add(&subset->words, subset->inputs[n], &error)) {
+			report_error(subset->inputs[n], NULL, &error);
+			return EXIT_FAILED;
+		}
+	scene_words_sort(&subset->words);
+	if (selection_open(&selection, subset->path, names, name_count)) {
+		subset->archive = selection.archive;
+		if (!selection.incomplete && materials_choose(subset, &selection, name_count))
+			result = subset_write(subset);
+		selection_close(&selection);
+	}
+	return result;
 }
 
 static int subset_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_MAX_ERROR = OPTION_LONG, OPTION_SCENE };
+	enum { OPTION_MAX_ERROR = OPTION_LONG, OPTION_SCENE, OPTION_FORCE };
 	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
 	                                      {"quiet", no_argument, NULL, 'q'},
 	                                      {"max-error", required_argument, NULL, OPTION_MAX_ERROR},
 	                                      {"scene", required_argument, NULL, OPTION_SCENE},
+	                                      {"force", no_argument, NULL, OPTION_FORCE},
 	                                      {0}};
-	struct subset subset = {.copy = {.stop = stop}};
-	struct selection selection;
-	int option, result = EXIT_FAILED;
-	bp_error error;
+	struct subset subset = {.copy = {.stop = stop}, .inputs = calloc((size_t)argc + 1, sizeof *subset.inputs)};
+	int option, result;
 
+	if (!subset.inputs) {
+		report_text("out of memory");
+		return EXIT_FAILED;
+	}
 	while ((option = options_next(self, argc, argv, "o:q", names)) >= 0) {
-		if (option == 'o') {
+		if (option == 'o')
 			subset.copy.output = optarg;
-		} else if (option == 'q') {
+		else if (option == 'q')
 			subset.quiet = true;
-		} else if (option == OPTION_MAX_ERROR) {
-			if (!option_number(self, "--max-error", optarg, 1e-6, 10, &subset.copy.max_log_rmse)) {
-				scene_words_free(&subset.words);
-				return EXIT_USAGE;
-			}
-		} else {
-			subset.scene_count++;
-			if (scene_words_add(&subset.words, optarg, &error)) {
-				report_error(optarg, NULL, &error);
-				scene_words_free(&subset.words);
-				return EXIT_FAILED;
-			}
+		else if (option == OPTION_FORCE)
+			subset.force = true;
+		else if (option == OPTION_SCENE)
+			subset.inputs[++subset.scene_count] = optarg;
+		else if (!option_number(self, "--max-error", optarg, 1e-6, 10, &subset.copy.max_log_rmse)) {
+			option = OPTIONS_WRONG;
+			break;
 		}
 	}
-	if (option != OPTIONS_END || !subset.copy.output || !*subset.copy.output || optind >= argc) {
-		scene_words_free(&subset.words);
-		if (option != OPTIONS_END)
-			return options_exit_code(option);
-		return report_usage(self, subset.copy.output && *subset.copy.output ? "no archive" : "no output file; give one with -o SCENE.bpk");
+	if (option != OPTIONS_END) {
+		result = options_exit_code(option);
+	} else if (!subset.copy.output || !*subset.copy.output || optind >= argc) {
+		result = report_usage(self, subset.copy.output && *subset.copy.output ? "no archive" : "no output file; give one with -o SCENE.bpk");
+	} else {
+		subset.path = subset.inputs[0] = argv[optind];
+		result = subset_run(&subset, argv + optind + 1, argc - optind - 1);
 	}
-	scene_words_sort(&subset.words);
-	subset.path = argv[optind];
-	const int name_count = argc - optind - 1;
-	if (selection_open(&selection, subset.path, argv + optind + 1, name_count)) {
-		subset.archive = selection.archive;
-		if (!selection.incomplete && materials_choose(&subset, &selection, name_count))
-			result = subset_write(&subset);
-		selection_close(&selection);
-	}
+	free(subset.inputs);
 	free(subset.index);
 	scene_words_free(&subset.words);
 	return result;
@@ -163,13 +216,16 @@ const struct command command_subset = {
 	         "Copies the named materials, those that scene files name, or all. Records are copied byte\n"
 	         "for byte, but for layers that are left out.\n"
 	         "\n"
-	         "  -o, --output SCENE.bpk  the new archive\n"
+	         "  -o, --output SCENE.bpk  the new archive; replaces an older one that is not the input\n"
+	         "      --force             also the input, or a file that is no archive\n"
 	         "      --max-error E       keep the fewest layers whose log RMSE is at most E; all where\n"
 	         "                          there is none\n"
-	         "      --scene FILE        also the materials whose name stands between quotes in FILE\n"
-	         "                          (pbrt, Mitsuba XML, USD ASCII, JSON); may be given repeatedly\n"
+	         "      --scene FILE        also the materials whose name, or measured file, stands between\n"
+	         "                          quotes in FILE (pbrt, Mitsuba XML, USD ASCII, JSON); may be given\n"
+	         "                          repeatedly\n"
 	         "  -q, --quiet             say nothing on success\n"
 	         "  -h, --help              this text\n"
 	         "\n"
-	         "When a NAME is not there, nothing is written and the exit code is 1.\n",
+	         "When a NAME is not there, nothing is written and the exit code is 1. A measured file that a\n"
+	         "scene names and the archive has not is told, the others are copied, and the exit code is 1.\n",
 };

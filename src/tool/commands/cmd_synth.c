@@ -21,34 +21,51 @@ static bool lattice_parse(const char *text, struct lattice_dims *dims)
 	return lattice_dims_legal(*dims);
 }
 
-static bool material_write(size_t index, struct lattice_dims dims, bool clean, const char *folder)
+struct synthesis {
+	struct lattice_dims dims;
+	bool clean;
+	const char *folder;
+};
+
+static const char *material_name(void *user, uint64_t n)
 {
+	(void)user;
+	return demo_name((size_t)n);
+}
+
+static bp_status material_write(void *user, uint64_t n, const char *path, enum output_rule rule, bp_error *error)
+{
+	const struct synthesis *synthesis = user;
 	struct lattice lattice = {0};
-	bp_error error;
-	char *path = folder_path(folder, demo_name(index), "binary");
-	bp_status status = path ? demo_generate(index, dims, clean, &lattice, &error) : error_memory(&error, 0);
+	bp_status status = demo_generate((size_t)n, synthesis->dims, synthesis->clean, &lattice, error);
 	if (!status)
-		status = lattice_save_path(path, &lattice, &error);
-	if (status)
-		report_error(folder, demo_name(index), &error);
+		status = lattice_save_path(path, rule, &lattice, error);
 	lattice_free(&lattice);
-	free(path);
-	return !status;
+	return status;
+}
+
+static void material_failed(void *user, uint64_t n, const bp_error *error)
+{
+	const struct synthesis *synthesis = user;
+	report_error(synthesis->folder, demo_name((size_t)n), error);
 }
 
 static int synth_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_CLEAN = OPTION_LONG, OPTION_LATTICE };
+	enum { OPTION_CLEAN = OPTION_LONG, OPTION_LATTICE, OPTION_FORCE };
 	static const struct option names[] = {
-		{"clean", no_argument, NULL, OPTION_CLEAN}, {"lattice", required_argument, NULL, OPTION_LATTICE}, {0}};
-	struct lattice_dims dims = LATTICE_MERL;
-	bool clean = false, whole = true;
+		{"clean", no_argument, NULL, OPTION_CLEAN}, {"lattice", required_argument, NULL, OPTION_LATTICE},
+		{"force", no_argument, NULL, OPTION_FORCE}, {0}};
+	struct synthesis synthesis = {.dims = LATTICE_MERL};
+	bool force = false;
 	int option;
 
 	while ((option = options_next(self, argc, argv, "", names)) >= 0) {
 		if (option == OPTION_CLEAN)
-			clean = true;
-		else if (!lattice_parse(optarg, &dims))
+			synthesis.clean = true;
+		else if (option == OPTION_FORCE)
+			force = true;
+		else if (!lattice_parse(optarg, &synthesis.dims))
 			return report_usage(self, "--lattice: '%s' is not HxDxP with 4 to %d cells each, at most %d in all", optarg,
 			                    LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
 	}
@@ -56,23 +73,23 @@ static int synth_main(const struct command *self, int argc, char **argv)
 		return options_exit_code(option);
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no folder" : "more than one folder");
-	const char *folder = argv[optind];
-	if (!folder_create(folder))
-		return EXIT_FAILED;
-	for (size_t i = 0; i < demo_count() && whole; i++)
-		whole = material_write(i, dims, clean, folder);
-	return whole ? EXIT_OK : EXIT_FAILED;
+	synthesis.folder = argv[optind];
+	const struct folder_set set = {.folder = synthesis.folder, .suffix = "binary", .count = demo_count(), .force = force, .user = &synthesis,
+	                               .name = material_name, .write = material_write, .failed = material_failed};
+	return folder_write(&set) ? EXIT_OK : EXIT_FAILED;
 }
 
 const struct command command_synth = {
 	.name = "synth",
 	.run = synth_main,
 	.description = "write the demo materials as MERL files",
-	.usage = "Usage: brdfpack synth [--clean] DIR\n"
+	.usage = "Usage: brdfpack synth [--clean] [--force] DIR\n"
 	         "Writes analytic materials of every kind as MERL files (35 MB each) into DIR, which is created\n"
-	         "when it is missing: with noise and unmeasured cells like a measurement's.\n"
+	         "when it is missing: with noise and unmeasured cells like a measurement's. When a file\n"
+	         "of one of their names is there and differs, nothing is written.\n"
 	         "\n"
 	         "      --clean          without noise and faults\n"
+	         "      --force          replace files that are there\n"
 	         "      --lattice HxDxP  other extents than MERL's 90x90x180 (for tests)\n"
 	         "  -h, --help           this text\n",
 };

@@ -318,7 +318,7 @@ int page_run(const struct page_options *options, struct selection *selection)
 	if (status == BP_OK)
 		status = sources_find(&making, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */
-		status = output_file_open(options->output, &output.file, &error);
+		status = output_file_open(options->output, OUTPUT_REPLACE, &output.file, &error);
 	if (status == BP_OK) {
 		bp_archive_verify(selection->archive, 0, problem_note, page, NULL);
 		status = materials_draw(&making, &error);

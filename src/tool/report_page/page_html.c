@@ -9,7 +9,7 @@ void html_text(FILE *out, const char *string)
 	const unsigned char *text = (const unsigned char *)string;
 	while (*text) {
 		uint32_t code = 0;
-		const size_t length = name_utf8(text, 4, &code);
+		const size_t length = name_character(text, 4, &code);
 		switch (*text) {
 		case '&': fputs("&amp;", out); break;
 		case '<': fputs("&lt;", out); break;

@@ -7,6 +7,7 @@
 #include "page_assets.inc"
 #include "page_html.h"
 #include "page_plots.h"
+#include "tool/output_check.h"
 
 enum { WORST_COUNT = 10 };
 
@@ -20,7 +21,7 @@ void page_head_write(FILE *out, const struct page *page)
 {
 	const char *leaf = path_leaf(page->selection->path);
 	const uint64_t all = bp_archive_count(page->selection->archive);
-	fputs("<!doctype html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>", out);
+	fputs(PAGE_MARK "<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>", out);
 	html_text(out, leaf);
 	fputs("</title>\n<style>\n", out);
 	fputs(PAGE_CSS, out);

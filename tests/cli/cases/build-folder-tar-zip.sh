@@ -1,4 +1,4 @@
-# The same materials give the same bytes, from a folder, in any order, from tar, compressed tar and zip.
+# The same materials give the same bytes, from a folder, in any order, from tar, compressed tar and zip. A file met twice is one.
 fixture alpha beta gamma
 mkdir -p folder/deep/deeper && mv alpha.binary folder && mv beta.binary folder/deep && mv gamma.binary folder/deep/deeper
 build -o folder.bpk folder

@@ -1,4 +1,4 @@
-# An illegal name is refused before any work.
+# An illegal name is refused and shown escaped, the others are packed.
 fixture alpha beta
 mv beta.binary $'be\nta.binary'
 code build -o out.bpk .

@@ -13,5 +13,5 @@ header(200, "good.bpk", "more.bpk")
 PY
 for command in list extract verify; do
 	code brdfpack $command promises.bpk
-	code brdfpack $command more.bpk 2>&1 | sed 's/offset [0-9]*/offset N/' | cut -c1-150 | grep -v ' spectral ' | tail -n 4
+	code brdfpack $command $([ $command = extract ] && echo -C x) more.bpk 2>&1 | sed 's/offset [0-9]*/offset N/' | cut -c1-150 | grep -v ' spectral ' | tail -n 4
 done

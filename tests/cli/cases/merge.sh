@@ -13,8 +13,8 @@ brdfpack merge --replace -o replaced.bpk all.bpk new.bpk
 brdfpack extract -C x replaced.bpk alpha
 brdfpack extract -C y all.bpk beta
 cmp x/alpha.binary y/beta.binary && echo "the last one's is there"
-brdfpack merge -q -o b.bpk b.bpk a.bpk
-cmp all.bpk b.bpk && echo "an output may be an input"
+brdfpack merge -q --force -o b.bpk b.bpk a.bpk
+cmp all.bpk b.bpk && echo "an output may be an input, by force"
 code brdfpack merge -o out.bpk a.bpk missing.bpk
 code brdfpack merge -o no/such/folder.bpk a.bpk
 code brdfpack merge a.bpk

@@ -16,6 +16,8 @@ code brdfpack verify --deep saved.bpk
 brdfpack extract -C saved saved.bpk
 for name in alpha gamma; do cmp "whole/$name.binary" "saved/$name.binary"; done
 code brdfpack recover -o hole.bpk hole.bpk
+code brdfpack recover --force -o hole.bpk hole.bpk >/dev/null 2>&1
+brdfpack verify hole.bpk
 code brdfpack recover -o none.bpk whole/alpha.binary
 code brdfpack recover hole.bpk
 ls

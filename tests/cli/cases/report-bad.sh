@@ -19,11 +19,18 @@ ls *.html 2>/dev/null
 cp "$(dirname "$0")/../../../format-spec/vectors/good-empty.bpk" .
 code brdfpack report -q -o empty.html good-empty.bpk
 grep -o 'There is no material in this archive' empty.html
+# what brdfpack did not make is not replaced, unless it is told to; a page of its own is
+echo mine >mine.html
+code brdfpack report -q -o mine.html good-empty.bpk
+cat mine.html
+code brdfpack report -q -o empty.html good-empty.bpk
+code brdfpack report -q --force -o mine.html good-empty.bpk
+cmp mine.html empty.html
 # a disk that is full leaves the older page
-echo old >full.html
+cp empty.html full.html
 (
 	ulimit -f 8 # blocks of 1024 bytes
 	trap '' XFSZ
 	code brdfpack report -q -o full.html out.bpk
 )
-cat full.html
+cmp full.html empty.html && echo untouched

@@ -1,0 +1,75 @@
+#include "source_names.h"
+
+#include <search.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "name.h"
+
+/* Who has a name: where it was first seen, as a person would write it. */
+struct claim {
+	char *name, *where;
+};
+
+static int claim_compare(const void *a, const void *b)
+{
+	return strcmp(((const struct claim *)a)->name, ((const struct claim *)b)->name);
+}
+
+static void claim_free(void *claim)
+{
+	free(((struct claim *)claim)->name);
+	free(((struct claim *)claim)->where);
+	free(claim);
+}
+
+char *source_text_shown(const char *text)
+{
+	const size_t room = 4 * strlen(text) + 8;
+	char *shown = malloc(room);
+	if (shown)
+		name_escape(text, shown, room);
+	return shown;
+}
+
+bp_status source_name_make(const char *path, const char *member, const char *fault, char name[SOURCE_STEM_BYTES], bp_error *error)
+{
+	source_stem(member ? member : path, name);
+	const char *illegal = name_fault(name, strlen(name));
+	if (illegal && !name_text(name) && member)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+		                 "its stem cannot name a material: %s; tell the names' character set with --charset (CP437, SHIFT_JIS, ISO-8859-1 ...)", illegal);
+	if (illegal)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "its stem cannot name a material: %s; rename the file", illegal);
+	return fault ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", fault) : BP_OK;
+}
+
+bp_status source_name_claim(void **names, const char *name, const char *path, const char *member, bp_error *error)
+{
+	char *where = NULL, *shown = source_text_shown(member ? member : "");
+	struct claim *claim = calloc(1, sizeof *claim);
+	if (shown && asprintf(&where, "%s%s%s", path, member ? ": member " : "", shown) < 0)
+		where = NULL;
+	free(shown);
+	if (!claim || !where || !(claim->name = strdup(name))) {
+		free(where);
+		free(claim);
+		return error_memory(error, sizeof *claim);
+	}
+	claim->where = where;
+	struct claim **holder = tsearch(claim, names, claim_compare);
+	if (holder && *holder == claim)
+		return BP_OK;
+	claim_free(claim);
+	if (!holder)
+		return error_memory(error, sizeof *claim);
+	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "two materials named %s: %.300s has the name; rename or leave out one",
+	                 name, (*holder)->where);
+}
+
+void source_names_free(void *names)
+{
+	tdestroy(names, claim_free);
+}

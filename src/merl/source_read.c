@@ -1,0 +1,127 @@
+/* source_read.c: one material after the other, of what source.c listed. */
+#include "source.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "source_names.h"
+
+void source_item_clear(struct source_item *item)
+{
+	free(item->name);
+	free(item->path);
+	free(item->member);
+	*item = (struct source_item){0};
+}
+
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member, bp_error *error)
+{
+	*item = (struct source_item){.name = strdup(name), .path = strdup(path), .member = member ? strdup(member->path) : NULL};
+	if (!item->name || !item->path || (member && !item->member)) {
+		source_item_clear(item);
+		return error_memory(error, strlen(path));
+	}
+	if (member) {
+		item->ordinal = member->ordinal;
+		item->bytes = member->bytes;
+	}
+	return BP_OK;
+}
+
+bool source_is_wanted(const struct source_list *list, const char *name)
+{
+	return !list->options.wanted || list->options.wanted(list->options.user, name);
+}
+
+static bool stream_is_named(const struct source_list *list, const char *path)
+{
+	for (size_t n = 0; n < list->stream_count; n++)
+		if (!strcmp(list->streams[n], path))
+			return list->stream_named[n];
+	return false;
+}
+
+/* A member that is wanted: taken, or refused with *out filled all the same. */
+static bp_status member_take(struct source_list *list, const char *path, const struct container_member *member, const char *name, bp_status fault,
+                             struct source_item *out, bp_error *error)
+{
+	bp_status status = fault ? fault : source_name_claim(&list->names, name, path, member->path, error);
+	bp_error memory;
+	if (source_item_fill(out, name, path, member, &memory)) {
+		*error = memory;
+		return memory.status;
+	}
+	if (!status)
+		return BP_OK;
+	char *shown = source_text_shown(out->name), *shown_member = source_text_shown(out->member);
+	if (shown && shown_member) {
+		free(out->name);
+		free(out->member);
+		out->name = shown;
+		out->member = shown_member;
+	} else {
+		free(shown);
+		free(shown_member);
+	}
+	list->refused_count++;
+	return status;
+}
+
+bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
+                             bool *more, bp_error *error)
+{
+	struct container_member member;
+	char name[SOURCE_STEM_BYTES];
+	*out = (struct source_item){0};
+	for (;;) {
+		const size_t ignored = container_ignored(stream);
+		bp_status status = container_next(stream, &member, more, error);
+		list->ignored_count += container_ignored(stream) - ignored;
+		if (status != BP_OK)
+			return status;
+		if (!*more) {
+			const char *remark = container_remark(stream);
+			const bool tell = list->told != stream && (remark || (container_members(stream) == 0 && stream_is_named(list, path)));
+			list->told = tell ? stream : NULL;
+			return !tell    ? BP_OK
+			       : remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", remark)
+			                : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no material in it; other files passed over: %zu (MERL files end in .binary)",
+			                            container_ignored(stream));
+		}
+		const bp_status fault = source_name_make(path, member.path, member.fault, name, error);
+		if (source_is_wanted(list, name))
+			return member_take(list, path, &member, name, fault, out, error);
+		list->unwanted_count++;
+	}
+}
+
+void source_cursor_close(struct source_cursor *cursor)
+{
+	container_close(cursor->container);
+	free(cursor->path);
+	*cursor = (struct source_cursor){0};
+}
+
+bp_status source_item_read(const struct source_item *item, struct source_cursor *cursor, const struct merl_reading *reading,
+                           struct lattice *out, bp_error *error)
+{
+	bp_status status;
+	if (!item->member)
+		return lattice_read_path(item->path, reading, out, error);
+	if (!cursor->container || strcmp(cursor->path, item->path) != 0 || !container_ahead(cursor->container, item->ordinal)) {
+		source_cursor_close(cursor);
+		status = container_open(item->path, CONTAINER_INDEXED, NULL, &cursor->container, error);
+		if (status != BP_OK)
+			return status;
+		cursor->path = strdup(item->path);
+		if (!cursor->path) {
+			source_cursor_close(cursor);
+			return error_memory(error, strlen(item->path));
+		}
+	}
+	status = container_seek(cursor->container, item->ordinal, error);
+	if (status != BP_OK)
+		return status;
+	return lattice_read(container_read, cursor->container, reading, out, error);
+}

@@ -1,0 +1,75 @@
+#include "output_path.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "bytes.h"
+#include "error.h"
+
+/* The folder's length in a path, the last slash included; 0: the current folder. */
+static size_t folder_bytes(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+char *output_path_beside(const char *target, const char *name)
+{
+	const size_t folder = folder_bytes(target), bytes = folder + strlen(name) + 1;
+	char *path = malloc(bytes);
+	if (path) {
+		memcpy(path, target, folder);
+		memcpy(path + folder, name, bytes - folder);
+	}
+	return path;
+}
+
+char *output_path_folder(const char *target)
+{
+	return output_path_beside(target, folder_bytes(target) ? "" : ".");
+}
+
+bp_status output_path_resolve(const char *path, char **out, bool *found, struct stat *about, bp_error *error)
+{
+	*found = false;
+	if (!*path)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the output path is empty");
+	*found = lstat(path, about) == 0;
+	if (!*found && errno == ENAMETOOLONG)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot create: %s", path, strerror(errno));
+	if (!*found && path[strlen(path) - 1] == '/')
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: names a folder, not a file", path);
+	const bool link = *found && S_ISLNK(about->st_mode);
+	char *target = link ? realpath(path, NULL) : strdup(path);
+	if (!target && link && errno != ENOMEM)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: a link that leads to nothing: %s", path, strerror(errno));
+	if (!target)
+		return error_memory(error, strlen(path) + 1);
+	if (link && stat(target, about) != 0) {
+		free(target);
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot follow the link: %s", path, strerror(errno));
+	}
+	if (*found && !S_ISREG(about->st_mode)) {
+		free(target);
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: is %s, not a regular file", path,
+		                 S_ISDIR(about->st_mode) ? "a folder" : "a special file");
+	}
+	*out = target;
+	return BP_OK;
+}
+
+void output_path_stem(const char *target, char stem[OUTPUT_STEM_BYTES])
+{
+	const char *name = target + folder_bytes(target);
+	snprintf(stem, OUTPUT_STEM_BYTES, ".brdfpack-%08x-", bytes_crc32(name, strlen(name)));
+}
+
+int output_path_lock(int fd)
+{
+	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+	return fcntl(fd, F_SETLK, &lock);
+}

@@ -1,0 +1,293 @@
+"""Archives as mappings from names to materials."""
+from __future__ import annotations
+
+import builtins
+import os
+import threading
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from ._error import Error, NoPickle, check
+from ._material import Material, table_read
+from ._native import ffi, lib
+
+FORMS = {"expanded": lib.BP_FORM_EXPANDED, "compact": lib.BP_FORM_COMPACT, "preview": lib.BP_FORM_PREVIEW}
+COLOURS = {"rgb": lib.BP_COLOUR_RGB, "mean": lib.BP_COLOUR_MEAN}
+PROFILES = {1: "paper", 2: "spectral"}
+
+
+class Layer(NamedTuple):
+    """A set of sections: what loading it costs, and what error is left."""
+
+    bytes: int
+    log_rmse: float
+    cube_root_rmse: float
+    largest_relative: float
+
+
+class Section(NamedTuple):
+    """A part of a record with a checksum of its own."""
+
+    type: int
+    codec: int
+    version: int
+    layer: int
+    flags: int
+    bytes: int
+    error: float
+
+
+class Channel(NamedTuple):
+    """The robust regression of one channel."""
+
+    diffuse: float
+    specular: float
+    rejected: float
+    iterations: int
+    converged: bool
+
+
+class Problem(NamedTuple):
+    """One thing that is wrong: material is its name, or None where the header or the index is meant."""
+
+    material: str | None
+    error: Error
+
+
+class Info(NamedTuple):
+    """What a record's head says. shape: cells (H, D, P); source_sha256: of the measured file, 32 bytes."""
+
+    name: str
+    profile: str
+    codec_version: int
+    shape: tuple[int, int, int]
+    head_bytes: int
+    record_bytes: int
+    record_offset: int
+    channels: tuple[Channel, ...]
+    layers: tuple[Layer, ...]
+    sections: tuple[Section, ...]
+    left_out: int
+    effort: int
+    budget_bytes: int
+    max_error: float
+    source_bytes: int
+    source_sha256: bytes
+    source_nonfinite: int
+    horizon_limit: float
+
+
+def elements(call, handle, index: int, kind: str, most: int, error) -> list:
+    array, count = ffi.new(f"{kind}[]", most), ffi.new("uint32_t *")
+    check(call(handle, index, ffi.sizeof(kind), array, most, count, error), error)
+    return [array[n] for n in range(count[0])]
+
+
+class Entry(NoPickle):
+    """A material of an archive, not loaded: archive["nickel"]. info, record(), load(...), table(...)."""
+
+    def __init__(self, archive: "Archive", name: str, index: int):
+        self._archive = archive
+        self._index = index
+        self.name = name
+
+    def __repr__(self) -> str:
+        return f"<brdfpack material {self.name!r}, not loaded>"
+
+    @property
+    def info(self) -> Info:
+        """What is known of it without loading it."""
+        error = ffi.new("bp_error *")
+        info = ffi.new("bp_material_info *", {"struct_bytes": ffi.sizeof("bp_material_info")})
+        with self._archive._open() as handle:
+            check(lib.bp_archive_info(handle, self._index, info, error), error)
+            layers = elements(lib.bp_archive_layers, handle, self._index, "bp_layer", lib.BP_LAYERS_MAX, error)
+            sections = elements(lib.bp_archive_sections, handle, self._index, "bp_section", lib.BP_SECTIONS_MAX, error)
+        return Info(
+            name=self.name, profile=PROFILES.get(info.profile, str(info.profile)), codec_version=info.codec_version,
+            shape=(info.theta_h, info.theta_d, info.phi_d), head_bytes=info.head_bytes, record_bytes=info.record_bytes,
+            record_offset=info.record_offset,
+            channels=tuple(Channel(c.diffuse, c.specular, c.rejected, c.iterations, bool(c.converged)) for c in info.channels),
+            layers=tuple(Layer(x.bytes, x.log_rmse, x.cube_root_rmse, x.largest_relative) for x in layers),
+            sections=tuple(Section(s.type, s.codec, s.version, s.layer, s.flags, s.bytes, s.error) for s in sections),
+            left_out=info.left_out, effort=info.effort, budget_bytes=info.budget_bytes, max_error=info.max_error,
+            source_bytes=info.source_bytes, source_sha256=bytes(ffi.buffer(info.source_sha256)),
+            source_nonfinite=info.source_nonfinite, horizon_limit=info.horizon_limit)
+
+    def record(self) -> bytes:
+        """Its record, byte for byte: what Writer.add takes."""
+        error, record, count = ffi.new("bp_error *"), ffi.new("uint8_t **"), ffi.new("size_t *")
+        with self._archive._open() as handle:
+            check(lib.bp_archive_record(handle, self._index, record, count, error), error)
+        try:
+            return ffi.buffer(record[0], count[0])[:]
+        finally:
+            lib.bp_free(record[0])
+
+    def load(self, max_error: float = 0.0, form: str = "expanded", colour: str = "rgb", sampling: bool = False) -> Material:
+        """As Archive.load."""
+        for value, known in ((form, FORMS), (colour, COLOURS)):
+            if value not in known:
+                raise ValueError(f"{value!r} is none of {', '.join(known)}")
+        error, material = ffi.new("bp_error *"), ffi.new("bp_material **")
+        options = ffi.new("bp_load_options *", {"struct_bytes": ffi.sizeof("bp_load_options"), "max_log_rmse": max_error, "form": FORMS[form],
+                                                "colour": COLOURS[colour], "sampling": int(bool(sampling))})
+        record, shape = self.record(), self.info.shape
+        with self._archive._open() as handle:
+            check(lib.bp_material_load(handle, self._index, options, material, error), error)
+        return Material(material[0], self.name, record, max_error, shape)
+
+    def table(self, max_error: float = 0.0, dtype="float32", continued: bool = False):
+        """The decoded table without loading the material; as Material.table."""
+        shape = self.info.shape
+        with self._archive._open() as handle:
+            return table_read(handle, self._index, shape, max_error, dtype, continued)
+
+
+class Archive(Mapping, NoPickle):
+    """An open archive: a mapping from names, in the order of their bytes, to what is known of each material. brdfpack.open makes it."""
+
+    def __init__(self, handle, path: str):
+        self._handle = handle
+        self._uses = 0  # calls that are in the library; close waits for none, the last one of them closes
+        self._closed = False
+        self._lock = threading.Lock()
+        self.path = path
+
+    def __repr__(self) -> str:
+        return f"<brdfpack.Archive {self.path!r}{', closed' if self._closed else f': {len(self)} materials'}>"
+
+    def _open(self) -> "Use":
+        return Use(self)
+
+    def _drop(self) -> None:
+        with self._lock:
+            handle = self._handle if self._closed and not self._uses else None
+            if handle is not None:
+                self._handle = None
+        if handle is not None:
+            lib.bp_archive_close(handle)
+
+    def close(self) -> None:
+        """Closes it; again does nothing. Materials that were loaded stay usable."""
+        self._closed = True
+        self._drop()
+
+    def __enter__(self) -> "Archive":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_lock"):
+            self.close()
+
+    def __len__(self) -> int:
+        with self._open() as handle:
+            return lib.bp_archive_count(handle)
+
+    def __iter__(self) -> Iterator[str]:
+        error, name = ffi.new("bp_error *"), ffi.new("char[256]")
+        for index in range(len(self)):
+            with self._open() as handle:
+                check(lib.bp_archive_name(handle, index, name, error), error)
+            yield ffi.string(name).decode()
+
+    def _find(self, name: str) -> int:
+        if not isinstance(name, str):
+            raise TypeError(f"materials are called by str, not {type(name).__name__}")
+        error, index = ffi.new("bp_error *"), ffi.new("uint64_t *")
+        with self._open() as handle:
+            check(lib.bp_archive_find(handle, name.encode("utf-8", "surrogateescape"), index, error), error)
+        return index[0]
+
+    def __contains__(self, name: object) -> bool:
+        try:
+            self._find(name)  # type: ignore[arg-type]
+        except (KeyError, TypeError):
+            return False
+        return True
+
+    def __getitem__(self, name: str) -> Entry:
+        return Entry(self, name, self._find(name))
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    __hash__ = object.__hash__
+
+    def load(self, name: str, max_error: float = 0.0, form: str = "expanded", colour: str = "rgb", sampling: bool = False) -> Material:
+        """Loads a material to evaluate.
+
+        max_error: > 0: the fewest layers whose log RMSE is at most this, all where none is; 0: all. form: "expanded", "compact" (a third
+        of the memory) or "preview" (every second value, quick). colour: "rgb" or "mean". sampling: also what sample, pdf and albedo need.
+        """
+        return self[name].load(max_error, form, colour, sampling)
+
+    @property
+    def bytes_read(self) -> int:
+        """Bytes read from the file so far."""
+        with self._open() as handle:
+            return lib.bp_archive_bytes_read(handle)
+
+    def verify(self, deep: bool = False) -> list[Problem]:
+        """Reads all of it and checks every checksum; deep: decodes every layer too. Returns what is wrong: nothing, where all is well."""
+        problems: list[Problem] = []
+
+        @ffi.callback("bp_problem_fn")
+        def note(_, problem):
+            name = None if problem.material == ffi.NULL else ffi.string(problem.material).decode("utf-8", "replace")
+            try:
+                check(problem.error.status, problem.error)
+            except (Error, MemoryError) as error:
+                problems.append(Problem(name, error))  # type: ignore[arg-type]
+            return 0
+
+        error = ffi.new("bp_error *")
+        with self._open() as handle:
+            status = lib.bp_archive_verify(handle, lib.BP_VERIFY_DEEP if deep else 0, note, ffi.NULL, error)
+        if status and not problems:
+            check(status, error)
+        return problems
+
+
+class Use:
+    """The handle for the time of one call, during which another thread's close waits."""
+
+    def __init__(self, archive: Archive):
+        self._archive = archive
+
+    def __enter__(self):
+        archive = self._archive
+        with archive._lock:
+            if archive._closed:
+                raise ValueError(f"the archive {archive.path} is closed")
+            archive._uses += 1
+            return archive._handle
+
+    def __exit__(self, *_) -> None:
+        with self._archive._lock:
+            self._archive._uses -= 1
+        self._archive._drop()
+
+
+def open(source) -> Archive:  # noqa: A001
+    """Opens the archive at a path, or one that bytes hold."""
+    error, handle = ffi.new("bp_error *"), ffi.new("bp_archive **")
+    if isinstance(source, bytes):
+        held = ffi.from_buffer(source)
+        check(lib.bp_archive_open_memory(held, len(source), handle, error), error)
+        archive = Archive(handle[0], "in memory")
+        archive._held = held  # type: ignore[attr-defined]  # for as long as the handle reads it
+        return archive
+    path = os.fspath(source)
+    try:
+        check(lib.bp_archive_open(os.fsencode(path), handle, error), error)
+    except Error as refused:
+        name = path if isinstance(path, str) else os.fsdecode(path)
+        if refused.status == lib.BP_ERROR_IO:
+            with builtins.open(path, "rb"):  # says it as Python does: FileNotFoundError, PermissionError
+                pass
+        raise Error(refused.status, f"{name}: {refused}", refused.offset) from None
+    return Archive(handle[0], path if isinstance(path, str) else os.fsdecode(path))

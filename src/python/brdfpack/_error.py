@@ -1,0 +1,43 @@
+"""Errors of the C library as exceptions."""
+from __future__ import annotations
+
+from ._native import ffi, lib
+
+
+class Error(Exception):
+    """What the library refused: str() is its message. status: a number that never changes its meaning, offset: byte in the file, or None."""
+
+    def __init__(self, status: int, message: str, offset: int | None = None):
+        super().__init__(message)
+        self.status = status
+        self.offset = offset
+
+    def __reduce__(self):
+        return Error, (self.status, self.args[0], self.offset)
+
+
+class NotFound(Error, KeyError):
+    """There is no material of that name: a KeyError too, as mappings have it."""
+
+    __str__ = Exception.__str__
+
+    def __reduce__(self):
+        return NotFound, (self.status, self.args[0], self.offset)
+
+
+def check(status: int, error) -> None:
+    """Raises what `error`, a bp_error that the call filled, says."""
+    if status == lib.BP_OK:
+        return
+    message = ffi.string(error.message).decode("utf-8", "replace")
+    if status == lib.BP_ERROR_MEMORY:
+        raise MemoryError(message)
+    kind = NotFound if status == lib.BP_ERROR_NOT_FOUND else Error
+    raise kind(status, message, None if error.offset == 2**64 - 1 else error.offset)
+
+
+class NoPickle:
+    """A base for what holds memory of the library."""
+
+    def __reduce__(self):
+        raise TypeError(f"a brdfpack.{type(self).__name__} cannot be pickled: open the archive anew in the other process")

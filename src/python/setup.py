@@ -1,0 +1,41 @@
+"""Builds the package over the project's C sources, which lie beside this folder: pip install ./src/python in a checkout."""
+import glob
+import os
+import re
+
+from setuptools import setup
+from setuptools.command.build_ext import build_ext
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SRC = os.path.dirname(HERE)
+# What the Makefile leaves to the tool: sources that want libraries of their own.
+TOOL_ONLY = {"merl/source.c", "merl/source_kind.c", "merl/container.c", "merl/sha256.c", "merl/demo.c", "memory_stream.c"}
+WINGS = ("", "merl", "model", "model/*", "codec", "codec/*", "archive")
+FLAGS = ["-std=c17", "-O3", "-D_GNU_SOURCE", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden",
+         "-ffunction-sections", "-fdata-sections"]
+
+
+def library_sources():
+    found = (path for wing in WINGS for path in glob.glob(os.path.join(SRC, wing, "*.c")))
+    return sorted(path for path in found if os.path.relpath(path, SRC) not in TOOL_ONLY)
+
+
+def version():
+    with open(os.path.join(SRC, "brdfpack.h"), encoding="utf-8") as header:
+        return re.search(r'^#define BP_VERSION "([^"]+)"', header.read(), re.M).group(1)
+
+
+class build_library_too(build_ext):
+    """The C library's objects first: some files have flags of their own, which an extension's list of sources cannot say."""
+
+    def build_extension(self, ext):
+        objects = []
+        for path in library_sources() + [os.path.join(HERE, "strided.c")]:
+            flags = FLAGS + (["-mavx2"] if path.endswith("_avx2.c") else [])
+            objects += self.compiler.compile([path], output_dir=self.build_temp, include_dirs=[SRC], extra_postargs=flags)
+        ext.extra_objects = objects
+        ext.depends = objects  # or a second build in the same folder would keep the first one's extension
+        super().build_extension(ext)
+
+
+setup(version=version(), cffi_modules=["build_native.py:ffi"], cmdclass={"build_ext": build_library_too})

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# The plugin for Mitsuba 3: tests/mitsuba.sh BUILD. Ends with 77, and why, where Mitsuba or the package cannot be had.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+tool=$PWD/$1/brdfpack
+scripts/mitsuba_venv.sh
+venv=build/mitsuba-venv
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cp -r src "$scratch/src"
+"$venv/bin/pip" --disable-pip-version-check -q install --force-reinstall --no-deps "$scratch/src/python" >"$scratch/log" 2>&1 ||
+	{ tail -n 5 "$scratch/log"; echo "the package does not build"; exit 1; }
+"$venv/bin/pip" --disable-pip-version-check -q install cffi >"$scratch/log" 2>&1 || { echo "skip: pip does not reach cffi"; exit 77; }
+
+names=(wine-velvet terracotta blue-car-paint beetle-wing)
+"$tool" synth "$scratch/all"
+inputs=("${names[@]/#/$scratch/all/}")
+"$tool" build -q -o "$scratch/demo.bpk" "${inputs[@]/%/.binary}"
+rm -r "$scratch/all"
+"$venv/bin/python" tests/mitsuba_plugin.py scalar_rgb "$tool" "$scratch/demo.bpk" "$scratch" "${names[@]}"
+# Dr.Jit's newest versions want more of LLVM than Debian 12's own version has
+for library in /usr/lib/*/libLLVM-1[5-9].so /usr/lib/*/libLLVM-[2-9]?.so; do [ ! -e "$library" ] || export DRJIT_LIBLLVM_PATH=$library; done
+[ -n "${DRJIT_LIBLLVM_PATH:-}" ] || { echo "skip: llvm_ad_rgb, as there is no LLVM of version 15 or later (apt-get install libllvm19)"; exit 77; }
+"$venv/bin/python" tests/mitsuba_plugin.py llvm_ad_rgb "$tool" "$scratch/demo.bpk" "$scratch" "${names[@]}"
