@@ -92,7 +92,7 @@ def main(tool, folder, out):
     with tempfile.TemporaryDirectory() as scratch:
         def render(*material):
             path = os.path.join(scratch, "sphere.pfm")
-            subprocess.run([tool, "render", "--size", str(SIZE), "-o", path, *material], check=True)
+            subprocess.run([tool, "render", "--force", "--size", str(SIZE), "-o", path, *material], check=True)
             return pfm_read(path)
 
         for line, (name, words) in enumerate(MATERIALS):

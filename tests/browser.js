@@ -8,7 +8,7 @@ class Browser {
 		browser.profile = fs.mkdtempSync(path.join(os.tmpdir(), "brdfpack-chromium-"));
 		browser.process = spawn(program, ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 			"--no-first-run", "--disable-background-networking", "--disable-component-update", `--user-data-dir=${browser.profile}`, "--remote-debugging-pipe", "about:blank"],
-			{ stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+			{ stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], detached: true }); // a group of its own, which ends as one
 		browser.waiting = new Map();
 		browser.number = 0;
 		browser.heard = [];
@@ -46,9 +46,9 @@ class Browser {
 	}
 	async end() {
 		const ended = new Promise((resolve) => this.process.once("exit", resolve));
-		this.process.kill();
+		process.kill(-this.process.pid, "SIGKILL");
 		await ended;
-		fs.rmSync(this.profile, { recursive: true, force: true, maxRetries: 5, retryDelay: 200 });
+		fs.rmSync(this.profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 200 });
 	}
 }
 

@@ -39,7 +39,7 @@ function serve() {
 // A linear picture of `brdfpack render`: {size, rgb}, top row first
 function rendered(...options) {
 	const file = path.join(folder, "render.pfm");
-	execFileSync(tool, ["render", "-o", file, ...options]);
+	execFileSync(tool, ["render", "--force", "-o", file, ...options]);
 	const bytes = fs.readFileSync(file), size = Number(/^PF\n(\d+)/.exec(bytes.toString("latin1", 0, 20))[1]), first = bytes.length - 12 * size * size;
 	const value = (x, y, c) => bytes.readFloatLE(first + 4 * (3 * ((size - 1 - y) * size + x) + c));
 	return { size, rgb: Float64Array.from({ length: 3 * size * size }, (_, n) => value(Math.floor(n / 3) % size, Math.floor(n / 3 / size), n % 3)) };

@@ -27,7 +27,7 @@ $(VIEWER_BUILD)/viewer.html: $(VIEWER_BUILD)/viewer.wasm $(addprefix src/viewer/
 # The page alone, for archives that are dropped onto it.
 $(VIEWER_BUILD)/index.html: $(VIEWER_BUILD)/viewer.html $(BUILD)/brdfpack format-spec/vectors/good-empty.bpk
 	$(call SAY,PAGE  $@)
-	$(Q)$(BUILD)/brdfpack report -q -o $@ format-spec/vectors/good-empty.bpk
+	$(Q)$(BUILD)/brdfpack report -q --force -o $@ format-spec/vectors/good-empty.bpk
 
 viewer:
 	@command -v $(EMCC) >/dev/null || { echo "the viewer needs emcc: apt-get install emscripten"; exit 1; }
