@@ -173,6 +173,7 @@ install: all $(BUILD)/brdfpack.pc $(addprefix $(BUILD)/,$(CMAKE_FILES))
 	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
 
 uninstall:
+	rm -f $(SHARE)/brdfpack/viewer.html $(SHARE)/brdfpack/index.html
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/cmake/brdfpack/,$(CMAKE_FILES)) $(SHARE)/bash-completion/completions/brdfpack
 	rm -f $(SHARE)/zsh/site-functions/_brdfpack $(SHARE)/fish/vendor_completions.d/brdfpack.fish
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/libbrdfpack_reader.a

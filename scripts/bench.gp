@@ -10,11 +10,11 @@ count = words(methods)
 points = work."/points"
 
 # A method keeps its colour (Okabe and Ito's, which colour-blind readers tell apart) and its mark in every plot.
-known = 'spectral paper tucker zfp archimedean ward cook-torrance edwards spectral-effort'
-array colour[10] = ['#0072B2', '#009E73', '#D55E00', '#E69F00', '#CC79A7', '#56B4E9', '#7F7F7F', '#000000', '#00308F', '#8B4513']
-array shape[10] = [7, 5, 9, 11, 13, 4, 6, 8, 2, 10]
+known = 'spectral paper tucker zfp archimedean ward cook-torrance edwards spectral-effort ward-relative cook-torrance-relative edwards-relative black'
+array colour[14] = ['#0072B2', '#009E73', '#D55E00', '#E69F00', '#CC79A7', '#56B4E9', '#7F7F7F', '#000000', '#00308F', '#56B4E9', '#7F7F7F', '#000000', '#BBBBBB', '#8B4513']
+array shape[14] = [7, 5, 9, 11, 13, 4, 6, 8, 2, 5, 7, 9, 1, 10]
 place(name) = sum [n = 1:words(known)] (word(known, n) eq name ? n : 0)
-style(m) = place(word(methods, m)) > 0 ? place(word(methods, m)) : 10
+style(m) = place(word(methods, m)) > 0 ? place(word(methods, m)) : 14
 own(m) = word(methods, m) eq 'paper' || word(methods, m) eq 'spectral'
 
 set logscale x

@@ -1,6 +1,7 @@
 #!/bin/sh
 # bench_table.sh TABLE.tsv [BUDGET]: the table of methods in RESULTS.md, as Markdown: one row per method at BUDGET bytes (60400) or at the
-# method's own size, the sphere's PSNR under the key lights per material, and medians. Under it the figures that the
+# method's own size, the sphere's PSNR under the key lights per material, and medians. Of an analytic model by two objectives the one with
+# the better mean PSNR is named. Under it the figures that the
 # paper prints for its own method and its rivals; then, if the run had any, the means for each effort (means, because
 # efforts differ by less than materials do).
 set -e
@@ -54,6 +55,15 @@ awk -F '\t' -v budget="$budget" '
 		}
 		return text
 	}
+	function mean_of(method,    n, sum) {
+		for (n = 1; n <= count; n++) sum += psnr[method, materials[n]]
+		return sum / count
+	}
+	function better_of(method,    base) { # of an analytic model by two objectives, which one serves the pictures better
+		base = method; sub(/-relative$/, "", base)
+		if (!((base "-relative") in rmse) || !(base in rmse)) return ""
+		return method == (mean_of(base) >= mean_of(base "-relative") ? base : base "-relative") ? " (the better)" : ""
+	}
 	END {
 		if (!methods && !efforts) {print "bench_table.sh: no rows at " budget " bytes" > "/dev/stderr"; exit 1}
 		printf "%s\n", head
@@ -64,7 +74,7 @@ awk -F '\t' -v budget="$budget" '
 		for (m = 1; m <= methods; m++) {
 			method = order[m]
 			exact = rmse[method] < 1e-6
-			line = sprintf("| %s | %d | %s | %.3g | %.2g | %.3g | %s | %s |", method, bytes[method], numbers[method], fit[method], decode[method], evaluate[method], \
+			line = sprintf("| %s | %d | %s | %.3g | %.2g | %.3g | %s | %s |", method better_of(method), bytes[method], numbers[method], fit[method], decode[method], evaluate[method], \
 				exact ? "0" : sprintf("%.4g", rmse[method]), exact ? "exact" : all[method])
 			for (n = 1; n <= count; n++) line = line " " (exact ? "" : psnr[method, materials[n]]) " |"
 			print line

@@ -291,8 +291,8 @@ DAUBECHIES = [(a + b * math.sqrt(3)) / (4 * math.sqrt(2)) for a, b in ((1, 1), (
 
 
 def plane_axis(n):
-    """(levels, cells) of the transform's axis for a field of n cells."""
-    levels = n.bit_length() - 2
+    """(levels, cells) of the transform's axis for n cells."""
+    levels = max(n.bit_length() - 2, 0)
     return levels, (n + (1 << levels) - 1 >> levels) << levels
 
 
@@ -311,76 +311,100 @@ def inverse_line(line, levels, low):
 class Field:
     """A sparse field: a density over rows x columns, 1 everywhere without coefficients."""
 
-    def __init__(self, rows, columns, count, step, low):
-        self.rows, self.columns, self.count, self.step, self.low = rows, columns, count, step, low
+    def __init__(self, rows, columns, low, mirrored, least):
+        self.rows, self.columns, self.low, self.mirrored, self.least = rows, columns, low, mirrored, least
+        self.row_axis, self.column_axis = plane_axis(rows), plane_axis((columns + 1) // 2 if mirrored else columns)
+        self.parts = 2 if mirrored else 1
+        self.cells = self.row_axis[1] * self.column_axis[1] * self.parts
         self.coefficients = {}
 
+    def band(self, index):
+        column, row = divmod(index, self.row_axis[1])
+
+        def level(axis, x):
+            return (x // (axis[1] >> axis[0])).bit_length()
+        return level(self.column_axis, column % self.column_axis[1]) + level(self.row_axis, row)
+
     def expand(self):
-        if not self.count:
+        if not self.coefficients:
             return [[1.0] * self.columns for _ in range(self.rows)]
-        (row_levels, m), (column_levels, n) = plane_axis(self.rows), plane_axis(self.columns)
-        plane = [[0.0] * n for _ in range(m)]
+        (row_levels, m), (column_levels, n) = self.row_axis, self.column_axis
+        plane = [[[0.0] * n for _ in range(self.parts)] for _ in range(m)]
         for index, value in self.coefficients.items():
-            plane[index // n][index % n] = value
-        plane = [inverse_line(row, column_levels, self.low) for row in plane]
-        plane = [inverse_line(list(column), row_levels, self.low) for column in zip(*plane)]
-        return [[min(max(plane[c][r], 0.0), 1e6) for c in range(self.columns)] for r in range(self.rows)]
+            column, row = divmod(index, m)
+            plane[row][column // n][column % n] = value
+        plane = [sum((inverse_line(part, column_levels, self.low) for part in row), []) for row in plane]
+        plane = list(zip(*[inverse_line(list(column), row_levels, self.low) for column in zip(*plane)]))
+        return [[min(max(v, self.least), 1e6) for v in self.unfold(plane[r])] for r in range(self.rows)]
+
+    def unfold(self, row):
+        if not self.mirrored:
+            return row[:self.columns]
+        even, odd, half, out = row[:self.column_axis[1]], row[self.column_axis[1]:], math.sqrt(0.5), [0.0] * self.columns
+        for k in range(self.columns // 2):
+            out[k], out[-1 - k] = (even[k] + odd[k]) * half, (even[k] - odd[k]) * half
+        if self.columns % 2:
+            out[self.columns // 2] = even[self.columns // 2]
+        return out
 
 
-def read_fields(data, at, count, rows, columns, low):
-    fields = []
-    demand(len(data) >= at + 8 * count, "corrupt", 0, "a section of coefficients is short")
-    cells = plane_axis(rows)[1] * plane_axis(columns)[1]
-    for i in range(count):
-        kept, step = struct.unpack_from("<If", data, at + 8 * i)
-        demand(kept <= cells and (0 < step < math.inf if kept else step == 0), "corrupt", at, "a field's count or step")
-        fields.append(Field(rows, columns, kept, step, low))
-    stream = data[at + 8 * count:]
-    demand(sum(f.count for f in fields) <= 8 * len(stream), "corrupt", at, "too many coefficients")
-    coder, gaps, magnitudes = RangeDecoder(stream), [Gamma() for _ in range(8)], [Gamma() for _ in range(8)]
-    for field in fields:
-        following = gap = magnitude = 0
-        for _ in range(field.count):
+def read_fields(data, fields):
+    demand(len(data) >= 2 * len(fields), "corrupt", 0, "a section of coefficients is short")
+    steps = struct.unpack_from(f"<{len(fields)}H", data)
+    demand(any(steps) and all(s == 0 or 7168 <= s <= 40448 for s in steps), "corrupt", 0, "steps")
+    stream = data[2 * len(fields):]
+    coder, numbers, gaps = RangeDecoder(stream), Gamma(), [Gamma() for _ in range(8)]
+    magnitudes, before, room = [[Gamma() for _ in range(4)] for _ in range(12)], {}, 8 * len(stream)
+    for field, step in zip(fields, steps):
+        if not step:
+            continue
+        count, following, gap, levels = numbers.decode(coder) + 1, 0, 0, {}
+        demand(count <= field.cells and count <= room, "corrupt", 0, "a field's number of coefficients")
+        room -= count
+        for _ in range(count):
             gap = gaps[min(size_class(gap), 7)].decode(coder)
-            magnitude = magnitudes[min(size_class(magnitude), 7)].decode(coder)
-            negative = coder.even(1)
-            demand(following + gap < cells and magnitude < 32767, "corrupt", 0, "a coefficient")
-            field.coefficients[following + gap] = (magnitude + 1) * field.step * (-1 if negative else 1)
-            following += gap + 1
+            index = following + gap
+            demand(index < field.cells, "corrupt", 0, "a coefficient's place")
+            level = magnitudes[min(field.band(index), 11)][min(abs(before.get(index, 0)), 3)].decode(coder) + 1
+            demand(level <= 1048575, "corrupt", 0, "a level")
+            levels[index] = -level if coder.even(1) else level
+            following = index + 1
+        before = levels
+        field.coefficients = {index: level * 2.0 ** ((step - 32768) / 256) for index, level in levels.items()}
     demand(coder.at == len(stream), "corrupt", 0, "the stream's length")
-    return fields
 
 
-PAPER_KINDS = {(1, 0, 1), (2, 1, 1), (3, 1, 1), (4, 1, 1)}
+PAPER_KINDS = {(4 * c + t, *kind) for c in range(3) for t, kind in ((1, (0, 2)), (2, (2, 1)), (3, (2, 1)), (4, (2, 1)))}
 
 
 def decode_paper(record, layers):
-    h, d, p = record.dims
     found = record.load(layers, PAPER_KINDS)
-    demand(1 in found and len(found[1]) == 8 + 4 * (h + d + p), "corrupt", record.base, "marginals")
-    scale, *marginals = struct.unpack(f"<d{h + d + p}f", found[1])
-    demand(all(0 <= x < math.inf for x in [scale] + marginals), "corrupt", record.base, "marginals")
-    demand(all(math.isfinite(c[1] * scale) for c in record.colour), "corrupt", record.base, "scale times specular")
+    return [decode_paper_channel(record, c, {t: found[4 * c + t] for t in range(1, 5) if 4 * c + t in found}) for c in range(3)]
+
+
+def decode_paper_channel(record, channel, found):
+    h, d, p = record.dims
+    diffuse, specular = record.colour[channel][:2]
+    demand(1 in found and len(found[1]) == 8 + 2 * (h + d + p), "corrupt", record.base, "marginals")
+    scale, *codes = struct.unpack(f"<d{h + d + p}H", found[1])
+    demand(0 <= scale < math.inf and math.isfinite(specular * scale), "corrupt", record.base, "the scale")
+    marginals = [2.0 ** ((code - 32768) / 1024) if code else 0.0 for code in codes]
     f_h, f_d, f_phi = marginals[:h], marginals[h:h + d], marginals[h + d:]
-    hd = read_fields(found[2], 0, 1, h, d, HAAR)[0] if 2 in found else Field(h, d, 0, 0, HAAR)
-    hphi = read_fields(found[3], 0, 1, h, p, HAAR)[0] if 3 in found else Field(h, p, 0, 0, HAAR)
-    slices = [Field(d, p, 0, 0, DAUBECHIES)]
-    if 4 in found:
-        demand(len(found[4]) >= 4, "corrupt", record.base, "slices")
-        count = struct.unpack_from("<I", found[4])[0]
-        demand(1 <= count <= h, "corrupt", record.base, "slices")
-        slices = read_fields(found[4], 4, count, d, p, DAUBECHIES)
-    c_hd, c_hphi, rgb = hd.expand(), hphi.expand(), [[], [], []]
-    c_slices = [s.expand() for s in slices]
+    shared = next(i for i in range(h + 1) if 9 * i * i >= 4 * h * h)
+    hd, hphi = Field(h, d, HAAR, False, 1 / 32), Field(h, p, HAAR, True, 1 / 32)
+    slices = [Field(d, p, DAUBECHIES, True, 0.0) for _ in range(shared + 1)]
+    for section, fields in (2, [hd]), (3, [hphi]), (4, slices):
+        if section in found:
+            read_fields(found[section], fields)
+    c_hd, c_hphi, c_slices, out = hd.expand(), hphi.expand(), [s.expand() for s in slices], []
     for i in range(h):
-        conditional = c_slices[min(i, len(slices) - 1)]
+        conditional = c_slices[min(i, shared)]
         for j in range(d):
             row = min(min(f_h[i] * f_d[j], 1e15) * c_hd[i][j], 1e15)
             for k in range(p):
                 b = row * min(f_phi[k] * c_hphi[i][k], 1e15) * conditional[j][k]
-                for c, (diffuse, specular, *_) in enumerate(record.colour):
-                    rgb[c].append(min(max(0.0, diffuse + specular * scale * b), 1e304))
-    return rgb
+                out.append(min(max(0.0, diffuse + specular * scale * b), 1e304))
+    return out
 
 
 # ---- 9: the spectral profile ----

@@ -17,7 +17,7 @@ set -euo pipefail
 
 # package:command, where any version of the command will do, however it was installed
 build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
-test="gcc-multilib libcmocka-dev libgsl-dev python3:python3 python3-dev python3-venv pkg-config:pkg-config cmake:cmake liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
+test="libc6-dev-i386 lib32gcc-12-dev libcmocka-dev libgsl-dev python3:python3 python3-dev python3-venv pkg-config:pkg-config cmake:cmake liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
 mitsuba="libllvm19"

@@ -61,7 +61,7 @@ typedef enum bp_status {
 	BP_ERROR_MEMORY = 2,      /* an allocation failed */
 	BP_ERROR_IO = 3,          /* the system refused to read or write */
 	BP_ERROR_NOT_OURS = 4,    /* this is not a brdfpack archive (or not a MERL file) */
-	BP_ERROR_UNSUPPORTED = 5, /* intact, but made for a newer reader */
+	BP_ERROR_UNSUPPORTED = 5, /* intact, but made for a newer reader, or by a writer so old that it is no longer read: the message says */
 	BP_ERROR_CORRUPT = 6,     /* damaged: a value that no writer writes */
 	BP_ERROR_CHECKSUM = 7,    /* damaged: a CRC32 differs */
 	BP_ERROR_LIMIT = 8,       /* beyond a limit that the specification sets */
@@ -161,14 +161,14 @@ typedef struct bp_layer {
 typedef struct bp_section {
 	uint32_t type, codec, version; /* as the format's specification numbers them */
 	uint32_t layer;                /* the first layer that needs it */
-	uint32_t flags;                /* bit 0: required, bit 1: colour only */
+	uint32_t flags;                /* bit 0: required, bit 1: colour only, bits 2, 3, 4: for channel R, G, B alone */
 	uint32_t bytes;
 	double error;                  /* its own error figure, or NaN */
 } bp_section;
 
 /*
  * Robust regression (DuMouchel and O'Brien 1989) of one channel's measured values, diffuse + specular x. Profile 1: x is the
- * decoded model, over all measured cells, and decoding uses both numbers. Profile 2: x is the measured mean of the three
+ * channel's decoded model, over all measured cells, and decoding uses both numbers (0 and 1 where the line would lose the model). Profile 2: x is the measured mean of the three
  * channels, over some 65,000 cells: a summary, which decoding does not use.
  */
 typedef struct bp_channel {
@@ -316,7 +316,10 @@ typedef enum bp_form {
 
 typedef enum bp_colour {
 	BP_COLOUR_RGB = 0,
-	BP_COLOUR_MEAN = 1 /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
+	BP_COLOUR_MEAN = 1, /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
+	BP_COLOUR_R = 2,    /* one channel, given back in all three. Of profile 1 only its sections are read, about a third; records of */
+	BP_COLOUR_G = 3,    /* other profiles do not keep channels apart: BP_ERROR_UNSUPPORTED */
+	BP_COLOUR_B = 4
 } bp_colour;
 
 /*

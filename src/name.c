@@ -1,7 +1,6 @@
 #include "name.h"
 
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -53,27 +52,6 @@ bool name_text(const char *name)
 		if (!(step = name_character((const uint8_t *)name, left, &code)))
 			return false;
 	return true;
-}
-
-size_t name_escape(const char *name, char *to, size_t room)
-{
-	const bool text = name_text(name); /* else what looks like a character in it is chance */
-	size_t used = 0;
-	for (size_t left = strlen(name); left > 0 && used + 5 <= room;) {
-		uint32_t code;
-		size_t step = name_character((const uint8_t *)name, left, &code);
-		if (step > 0 && (text || step == 1) && code >= 0x20 && !(code >= 0x7F && code < 0xA0)) {
-			memcpy(to + used, name, step);
-			used += step;
-		} else {
-			used += (size_t)sprintf(to + used, "\\x%02x", (unsigned)(uint8_t)*name);
-			step = 1;
-		}
-		name += step;
-		left -= step;
-	}
-	to[used] = '\0';
-	return used;
 }
 
 int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes)

@@ -23,9 +23,6 @@ size_t name_character(const uint8_t *s, size_t left, uint32_t *code);
 /* Whether the bytes are UTF-8, whatever the characters. */
 bool name_text(const char *name);
 
-/* What can be shown of any bytes: control characters, and all but ASCII where they are no UTF-8, as \xHH. NUL-terminated in to[room], cut where it is full. */
-size_t name_escape(const char *name, char *to, size_t room);
-
 /* -1, 0 or 1, in the archive's order. */
 int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes);
 

@@ -15,9 +15,9 @@ enum stage {
 	STAGE_REST,       /* everything else */
 	STAGE_READ,       /* file -> lattice: values and their validity */
 	STAGE_CHECKSUM,   /* the source's SHA-256 */
-	STAGE_CLEAN,      /* logarithms or density, filling of holes, noise */
+	STAGE_CLEAN,      /* logarithms or weights, filling of holes, noise */
 	STAGE_REGRESSION, /* colours */
-	STAGE_TRANSFORM,  /* spectra and their rotation, or marginals, copulas and wavelets */
+	STAGE_TRANSFORM,  /* spectra and their rotation, or marginals and pairs, fitted by their wavelets */
 	STAGE_CODE,       /* sections and head */
 	STAGE_MEASURE,    /* decoding every layer and measuring its error */
 	STAGE_COUNT

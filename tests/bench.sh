@@ -14,14 +14,14 @@ fail() { echo "bench.sh: $*"; exit 1; }
 mkdir in
 for name in silvered-mirror terracotta wine-velvet; do mv all/$name.binary in; done
 "$program" -q -j 2 -l "small tables" -o table.tsv in
-for method in paper spectral spectral-effort ward cook-torrance edwards archimedean tucker zfp zlib zstd xz cat raw-table; do
+for method in paper spectral spectral-effort ward ward-relative cook-torrance cook-torrance-relative edwards edwards-relative black archimedean tucker zfp zlib zstd xz cat raw-table; do
 	rows=$(awk -F '\t' -v method=$method '$2 == method && $1 != "(median)"' table.tsv | wc -l)
 	medians=$(awk -F '\t' -v method=$method '$2 == method && $1 == "(median)"' table.tsv | wc -l)
 	if [ "$rows" = 0 ] || [ "$rows" != $((3 * medians)) ]; then fail "$method has $rows rows and $medians medians"; fi
 done
 awk -F '\t' '!/^#/ {if (!fields) fields = NF; if (NF != fields) {print "a row of " NF " fields, not " fields; exit 1}}' table.tsv
 "$top/scripts/bench_table.sh" table.tsv >table.md
-for row in '| ward |' '| spectral |' '| effort |' '| 9 |'; do grep -qF "$row" table.md || fail "no row '$row' in the Markdown table"; done
+for row in '| ward' '(the better) |' '| black |' '| spectral |' '| effort |' '| 9 |'; do grep -qF "$row" table.md || fail "no row '$row' in the Markdown table"; done
 "$top/scripts/bench_table.sh" table.tsv 4000 >/dev/null
 if command -v gnuplot >/dev/null; then
 	"$top/scripts/bench_plot.sh" table.tsv plot

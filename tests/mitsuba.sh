@@ -7,7 +7,7 @@ scripts/mitsuba_venv.sh
 venv=build/mitsuba-venv
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-cp -r src "$scratch/src"
+cp -r Makefile src "$scratch"
 "$venv/bin/pip" --disable-pip-version-check -q install --force-reinstall --no-deps "$scratch/src/python" >"$scratch/log" 2>&1 ||
 	{ tail -n 5 "$scratch/log"; echo "the package does not build"; exit 1; }
 "$venv/bin/pip" --disable-pip-version-check -q install cffi >"$scratch/log" 2>&1 || { echo "skip: pip does not reach cffi"; exit 77; }

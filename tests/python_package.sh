@@ -13,7 +13,7 @@ pip=("$scratch/venv/bin/pip" --disable-pip-version-check -q)
 "${pip[@]}" download -d "$scratch/reach" "setuptools>=64" wheel cffi numpy >"$scratch/log" 2>&1 || { echo "skip: pip reaches no package index"; exit 77; }
 # the sources are copied: a build must want nothing of this folder, and leave nothing in it
 mkdir "$scratch/tree"
-cp -r src format-spec "$scratch/tree"
+cp -r Makefile src format-spec "$scratch/tree"
 rm -rf "$scratch/tree/src/python/build"
 "${pip[@]}" wheel --no-deps -w "$scratch/wheel" "$scratch/tree/src/python"
 rm -rf "$scratch/tree/src"

@@ -3,7 +3,8 @@
 #
 # Every archive of format-spec/vectors must be judged alike, and every decoded value agree to 1e-5; then the
 # same for records that were fitted in this very build (BUILD/tests/test_record_pack makes them), and for what both
-# evaluate at some angles, to 1e-3: the library's table has 10 bits of mantissa.
+# evaluate at some angles, to 1e-3: the library's table has 10 bits of mantissa. A slow oracle (paper_oracle.py) works
+# out the paper's profile itself.
 set -eu
 build=${1:?usage: tests/python_reader.sh BUILD}
 cd "$(dirname "$0")/.."
@@ -55,6 +56,11 @@ for values in "$folder"/*.values; do
 		{ for (c = 4; c < 7; c++) if (($c - $(c + 3)) ^ 2 > (1e-3 * $c) ^ 2) bad++ }
 		END { exit bad > 0 || NR < 10 }' || fail "$looks"
 done
+
+# The paper's profile from a lattice to its table, worked out independently.
+count=$((count + 1))
+"$build/tests/test_paper" --table >"$folder/table.json"
+python3 tests/paper_oracle.py "$folder/table.json" || fail "the oracle of the paper's profile"
 
 echo "python_reader: $count comparisons, $bad failed"
 [ "$bad" = 0 ]

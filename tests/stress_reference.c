@@ -2,8 +2,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "model/paper/marginal.h"
+#include "model/paper/paper.h"
 
 double relative_deviation(double found, double wanted, double floor)
 {
@@ -45,70 +47,69 @@ void reference_fidelity(const struct lattice *truth, const struct expansion *tab
 
 /* ---- marginals ---- */
 
-struct sums {
-	long double *sum;
-	uint32_t *count;
+struct slow_means {
+	long double sum[LATTICE_EXTENT_MAX], weight[LATTICE_EXTENT_MAX];
 };
 
-static void sums_alloc(struct sums *s, size_t n)
+/* One factor of the three-way fit from the others' logarithms; axis 2 is phi_d. */
+static void slow_turn(struct lattice_dims d, const float *value, const float *shown, long double f[3][LATTICE_EXTENT_MAX], int axis)
 {
-	s->sum = calloc(n, sizeof *s->sum);
-	s->count = calloc(n, sizeof *s->count);
-}
-
-static double means_deviation(const struct means *means, struct sums *s, size_t n, long double mean)
-{
-	double worst = 0;
-	for (size_t i = 0; i < n; i++) {
-		const long double exact = s->count[i] && mean > 0 ? s->sum[i] / s->count[i] / mean : 0;
-		const long double wanted = exact < DENSITY_DARK ? 0 : exact;
-		if (means->valid[i] != (s->count[i] != 0) || means->count[i] != s->count[i])
-			worst = INFINITY;
-		/* below 1e-290 of the mean a double may have lost digits */
-		worst = fmax(worst, (double)(fabsl(means->value[i] - wanted) / fmaxl(wanted, 1e-290L)));
+	const uint32_t extents[3] = {d.theta_h, d.theta_d, d.phi_d};
+	struct slow_means *means = calloc(1, sizeof *means);
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		for (uint32_t j = 0; j < d.theta_d; j++)
+			for (uint32_t k = 0; k < d.phi_d; k++) {
+				const size_t n = lattice_index(d, i, j, k);
+				const uint32_t at[3] = {i, j, k};
+				const long double w = shown[n] * (i < paper_shared_from(d.theta_h) ? 1.0L : 0.1L);
+				long double rest = log2l(fmaxl(value[n], 3e-4L));
+				for (int other = 0; other < 3; other++)
+					rest -= other == axis ? 0 : f[other][at[other]];
+				means->sum[at[axis]] += w * rest;
+				means->weight[at[axis]] += w;
+			}
+	for (uint32_t i = 0; i < extents[axis]; i++) {
+		const long double otherwise = axis == 2 || !i ? 0 : f[axis][i - 1];
+		long double m = means->weight[i] > 0 ? means->sum[i] / means->weight[i] : otherwise;
+		if (axis)
+			m = fmaxl(-4.32L, fminl(4.32L, m));
+		f[axis][i] = m;
 	}
-	free(s->sum);
-	free(s->count);
-	return worst;
+	free(means);
 }
 
 double reference_marginals(const struct lattice *lattice)
 {
 	const struct lattice_dims d = lattice->dims;
-	struct density density;
-	struct sums h, td, p, hd, hp;
-	long double total = 0, mean;
-	double worst;
+	const size_t cells = lattice_cells(d);
+	static long double f[3][LATTICE_EXTENT_MAX];
+	float *value = malloc(3 * cells * sizeof *value);
+	struct importance *importance;
+	struct marginals found;
+	double worst = 0;
 
-	if (density_build(lattice, &density, NULL) != BP_OK)
+	if (!value || importance_create(d, &importance, NULL) != BP_OK || marginals_alloc(d, &found, NULL) != BP_OK)
+		abort();
+	importance_weigh(importance, lattice, 1, importance_unit(importance, lattice), value, value + cells);
+	importance_shown(importance, lattice, value + 2 * cells);
+	if (marginals_fit(d, value, value + 2 * cells, &found, NULL) != BP_OK)
 		return -1;
-	sums_alloc(&h, d.theta_h);
-	sums_alloc(&td, d.theta_d);
-	sums_alloc(&p, d.phi_d);
-	sums_alloc(&hd, (size_t)d.theta_h * d.theta_d);
-	sums_alloc(&hp, (size_t)d.theta_h * d.phi_d);
+	memset(f, 0, sizeof f);
+	for (int turn = 0; turn < 3; turn++) {
+		for (int round = 0; round < 8; round++) {
+			slow_turn(d, value, value + 2 * cells, f, 0);
+			slow_turn(d, value, value + 2 * cells, f, 1);
+		}
+		slow_turn(d, value, value + 2 * cells, f, 2);
+	}
 	for (uint32_t i = 0; i < d.theta_h; i++)
-		for (uint32_t j = 0; j < d.theta_d; j++)
-			for (uint32_t k = 0; k < d.phi_d; k++) {
-				const size_t n = lattice_index(d, i, j, k);
-				const long double v = ((long double)lattice->rgb[0][n] + lattice->rgb[1][n] + lattice->rgb[2][n]) / 3;
-				long double *const to[5] = {&h.sum[i], &td.sum[j], &p.sum[k], &hd.sum[(size_t)i * d.theta_d + j],
-				                            &hp.sum[(size_t)i * d.phi_d + k]};
-				uint32_t *const counts[5] = {&h.count[i], &td.count[j], &p.count[k], &hd.count[(size_t)i * d.theta_d + j],
-				                             &hp.count[(size_t)i * d.phi_d + k]};
-				for (int t = 0; lattice->valid[n] && t < 5; t++) {
-					*to[t] += v;
-					++*counts[t];
-				}
-				total += lattice->valid[n] ? v : 0;
-			}
-	mean = total / lattice->valid_count;
-	worst = (double)(fabsl(density.mean - mean) / fmaxl(mean, 1e-290L)); /* below, K is a denormal number */
-	worst = fmax(worst, means_deviation(&density.axis[0], &h, d.theta_h, mean));
-	worst = fmax(worst, means_deviation(&density.axis[1], &td, d.theta_d, mean));
-	worst = fmax(worst, means_deviation(&density.axis[2], &p, d.phi_d, mean));
-	worst = fmax(worst, means_deviation(&density.hd, &hd, (size_t)d.theta_h * d.theta_d, mean));
-	worst = fmax(worst, means_deviation(&density.hphi, &hp, (size_t)d.theta_h * d.phi_d, mean));
-	density_free(&density);
+		worst = fmax(worst, found.h[i] > 0 ? fabs((double)(log2l(found.h[i]) - f[0][i])) : 0);
+	for (uint32_t j = 0; j < d.theta_d; j++)
+		worst = fmax(worst, fabs((double)(log2l(found.d[j]) - f[1][j])));
+	for (uint32_t k = 0; k < d.phi_d; k++)
+		worst = fmax(worst, fabs((double)(log2l(found.phi[k]) - f[2][k])));
+	marginals_free(&found);
+	importance_free(importance);
+	free(value);
 	return worst;
 }

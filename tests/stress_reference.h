@@ -12,7 +12,7 @@
  */
 void reference_fidelity(const struct lattice *truth, const struct expansion *table, struct fidelity *out);
 
-/* The largest relative deviation of density_build's scale and means from exact sums, over all five sets of means. Negative: it failed. */
+/* The largest deviation of the green channel's marginals, as logarithms to base 2, from the same fit in long double. Negative: it failed. */
 double reference_marginals(const struct lattice *lattice);
 
 /* Deviation of two figures relative to the second, which counts as at least `floor`. */

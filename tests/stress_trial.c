@@ -9,8 +9,8 @@ const char *const PROPERTY_NAMES[PROPERTY_COUNT] = {
 };
 
 const struct subject SUBJECTS[SUBJECT_COUNT] = {
-	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-12, 1e-12, 1e-12}, {70, 80, 70, 80}},
-	{"spectral", PROFILE_SPECTRAL, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-12, 1e-12, 1e-12}, {120, 120, 120, 120}},
+	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-5, 1e-12, 1e-12}, {70, 80, 70, 80}},
+	{"spectral", PROFILE_SPECTRAL, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-5, 1e-12, 1e-12}, {120, 120, 120, 120}},
 };
 static const struct {
 	enum profile profile;
@@ -18,6 +18,9 @@ static const struct {
 	enum property property;
 	double limit;
 } EXCEPTIONS[] = {
+	/* What a cell brighter by 12 orders of magnitude leaves around it hangs on the last bits: some thousandths of itself. */
+	{PROFILE_PAPER, "bright-cell", SCALE, 1e4},
+	{PROFILE_PAPER, "delta-lobe", SCALE, 1},
 	/* Ranges beyond single precision: the coefficients' rounding errors are what is lost. */
 	{PROFILE_SPECTRAL, "bright-cell", WHOLE_ONE, 10},
 	{PROFILE_SPECTRAL, "bright-cell", WHOLE_TEN, 30},

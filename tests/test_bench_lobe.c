@@ -172,13 +172,13 @@ static struct lattice make_table(const struct lobe_model *model, const float *sh
 	return lattice;
 }
 
-static void check_recovery(const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)
+static void check_recovery_by(enum lobe_objective objective, const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)
 {
 	struct lattice lattice = make_table(model, shape, diffuse, specular);
 	struct lobe_state *found;
 	void *state;
 
-	assert_int_equal(lobe_fit(model, &lattice, &state, NULL), BP_OK);
+	assert_int_equal(lobe_fit(model, &lattice, objective, &state, NULL), BP_OK);
 	found = state;
 	for (int n = 0; n < model->shape_count; n++)
 		assert_close(found->shape[n], shape[n], 1e-3);
@@ -188,6 +188,12 @@ static void check_recovery(const struct lobe_model *model, const float *shape, c
 	}
 	free(state);
 	lattice_free(&lattice);
+}
+
+static void check_recovery(const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)
+{
+	check_recovery_by(LOBE_COSINE, model, shape, diffuse, specular);
+	check_recovery_by(LOBE_RELATIVE, model, shape, diffuse, specular);
 }
 
 static const float DIFFUSE[3] = {0.3F, 0.12F, 0.04F}, SPECULAR[3] = {0.2F, 0.25F, 0.3F};
@@ -225,7 +231,7 @@ static void invalid_cells_take_no_part_in_a_fit(void **state)
 		lattice.valid[cell] = 0;
 		lattice.rgb[0][cell] = 1e6;
 	}
-	assert_int_equal(lobe_fit(&LOBE_WARD, &lattice, &fitted, NULL), BP_OK);
+	assert_int_equal(lobe_fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
 	found = fitted;
 	assert_close(found->shape[0], shape[0], 1e-3);
 	assert_close(found->diffuse[0], DIFFUSE[0], 1e-3);
@@ -241,7 +247,7 @@ static void a_table_without_a_valid_cell_is_refused(void **state)
 	(void)state;
 
 	assert_int_equal(lattice_alloc(SMALL, &lattice, NULL), BP_OK);
-	assert_int_equal(lobe_fit(&LOBE_WARD, &lattice, &fitted, &error), BP_ERROR_BAD_INPUT);
+	assert_int_equal(lobe_fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, &error), BP_ERROR_BAD_INPUT);
 	lattice_free(&lattice);
 }
 
@@ -257,7 +263,7 @@ static void a_black_table_gives_a_black_model(void **state)
 		lattice.rgb[0][cell] = lattice.rgb[1][cell] = lattice.rgb[2][cell] = 0;
 		lattice.valid[cell] = 1;
 	}
-	assert_int_equal(lobe_fit(&LOBE_COOK_TORRANCE, &lattice, &fitted, NULL), BP_OK);
+	assert_int_equal(lobe_fit(&LOBE_COOK_TORRANCE, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
 	found = fitted;
 	for (int c = 0; c < 3; c++)
 		assert_true(found->diffuse[c] == 0 && found->specular[c] == 0);

@@ -117,23 +117,6 @@ static void names_are_ordered_by_bytes_the_shorter_first(void **state)
 	assert_int_equal(name_compare("\xC3\xA9", 2, "z", 1), 1);
 }
 
-static void any_bytes_can_be_shown(void **state)
-{
-	(void)state;
-	static const struct { const char *bytes, *shown; } cases[] = {
-		{"nickel", "nickel"}, {"gr\xC3\xBCn", "gr\xC3\xBCn"}, {"a\nb", "a\\x0ab"}, {"gr\xFCn", "gr\\xfcn"},
-		{"\x8D\xDE\x8E\xBF", "\\x8d\\xde\\x8e\\xbf"}, /* Shift-JIS: two of these bytes look like UTF-8 */
-		{"\xC2\x9B" "31m", "\\xc2\\x9b31m"}, {"", ""},
-	};
-	char shown[64];
-	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-		assert_int_equal(name_escape(cases[n].bytes, shown, sizeof shown), strlen(cases[n].shown));
-		assert_string_equal(shown, cases[n].shown);
-	}
-	assert_int_equal(name_escape("\xFF\xFF\xFF", shown, 9), 8); /* cut where it is full, and not within one */
-	assert_string_equal(shown, "\\xff\\xff");
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -144,7 +127,6 @@ int main(void)
 		cmocka_unit_test(the_checksum_is_the_usual_crc32),
 		cmocka_unit_test(names_are_utf8_without_controls_and_slashes),
 		cmocka_unit_test(names_are_ordered_by_bytes_the_shorter_first),
-		cmocka_unit_test(any_bytes_can_be_shown),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

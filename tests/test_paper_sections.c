@@ -13,15 +13,14 @@ static uint32_t random_below(uint32_t n)
 	return (uint32_t)(random_state >> 32) % n;
 }
 
-/* `count` coefficients at random places of the first 90x90 (or fewer) cells' plane, levels up to `largest`. */
-static void field_fill(struct sparse_field *field, uint32_t rows, uint32_t columns, uint32_t count, uint32_t largest)
+/* `count` coefficients at random places of the plane, levels up to `largest`. */
+static void field_fill(struct lattice_dims dims, enum paper_field kind, uint32_t count, uint32_t largest, struct sparse_field *field)
 {
-	uint32_t cells = rows * columns, index = 0;
-	*field = (struct sparse_field){ .rows = rows, .columns = columns, .count = count, .step = 1.0f / 256 };
-	if (!count) {
-		field->step = 0;
+	uint32_t cells = paper_plane_cells(dims, kind), index = 0;
+	*field = (struct sparse_field){ .count = count, .step = count ? PAPER_STEP_ONE - 8 * 256 : 0 };
+	paper_field_extents(dims, kind, &field->rows, &field->columns);
+	if (!count)
 		return;
-	}
 	field->index = malloc(count * sizeof *field->index);
 	field->level = malloc(count * sizeof *field->level);
 	for (uint32_t i = 0; i < count; i++) {
@@ -29,16 +28,17 @@ static void field_fill(struct sparse_field *field, uint32_t rows, uint32_t colum
 		if (index >= cells)
 			index = cells - (count - i);
 		field->index[i] = index;
-		field->level[i] = (int16_t)(1 + random_below(largest));
+		field->level[i] = (int32_t)(1 + random_below(largest));
 		if (random_below(2))
-			field->level[i] = (int16_t)-field->level[i];
+			field->level[i] = -field->level[i];
 	}
 	for (uint32_t i = count; i-- > 1;) /* the clamp above may have made neighbours equal */
 		if (field->index[i - 1] >= field->index[i])
 			field->index[i - 1] = field->index[i] - 1;
 }
 
-static struct model *model_make(struct lattice_dims dims, uint32_t slices, uint32_t divisor_hd, uint32_t divisor_slice, uint32_t largest)
+/* Shares of the fields' cells, 0: none. */
+static struct model *model_make(struct lattice_dims dims, uint32_t divisor_pair, uint32_t divisor_slice, uint32_t largest)
 {
 	struct model *model = calloc(1, sizeof *model);
 	struct paper_model *paper = calloc(1, sizeof *paper);
@@ -47,45 +47,31 @@ static struct model *model_make(struct lattice_dims dims, uint32_t slices, uint3
 	model->dims = dims;
 	model->paper = paper;
 	paper->dims = dims;
-	paper->scale = 0.123456789;
-	for (int axis = 0; axis < 3; axis++) {
-		paper->marginal[axis] = malloc(extents[axis] * sizeof(float));
-		for (uint32_t i = 0; i < extents[axis]; i++)
-			paper->marginal[axis][i] = (float)(1 + random_below(1000)) / 500.0f;
+	for (int c = 0; c < 3; c++) {
+		struct paper_channel *channel = &paper->channel[c];
+		channel->scale = 0.123456789 * (c + 1);
+		for (int axis = 0; axis < 3; axis++) {
+			channel->marginal[axis] = malloc(extents[axis] * sizeof(float));
+			for (uint32_t i = 0; i < extents[axis]; i++)
+				channel->marginal[axis][i] = paper_coded((uint16_t)random_below(65536));
+		}
+		field_fill(dims, PAPER_HD, divisor_pair ? extents[0] * extents[1] / divisor_pair : 0, largest, &channel->hd);
+		field_fill(dims, PAPER_HPHI, divisor_pair ? extents[0] * extents[2] / divisor_pair : 0, largest, &channel->hphi);
+		channel->slice_count = paper_shared_from(dims.theta_h) + 1;
+		channel->slice = calloc(channel->slice_count, sizeof *channel->slice);
+		for (uint32_t i = 0; i < channel->slice_count; i++)
+			field_fill(dims, PAPER_SLICE, divisor_slice ? extents[1] * extents[2] / divisor_slice : 0, largest, &channel->slice[i]);
 	}
-	field_fill(&paper->hd, extents[0], extents[1], divisor_hd ? extents[0] * extents[1] / divisor_hd : 0, largest);
-	field_fill(&paper->hphi, extents[0], extents[2], divisor_hd ? extents[0] * extents[2] / divisor_hd : 0, largest);
-	paper->slice_count = slices;
-	paper->slice = calloc(slices, sizeof *paper->slice);
-	for (uint32_t i = 0; i < slices; i++)
-		field_fill(&paper->slice[i], extents[1], extents[2], divisor_slice ? extents[1] * extents[2] / divisor_slice : 0, largest);
 	return model;
 }
 
 static void model_drop(struct model *model)
 {
-	struct paper_model *paper = model->paper;
-	for (int axis = 0; paper && axis < 3; axis++)
-		free(paper->marginal[axis]);
-	if (paper) {
-		free(paper->hd.index);
-		free(paper->hd.level);
-		free(paper->hphi.index);
-		free(paper->hphi.level);
-		for (uint32_t i = 0; i < paper->slice_count; i++) {
-			free(paper->slice[i].index);
-			free(paper->slice[i].level);
-		}
-		free(paper->slice);
-	}
-	free(paper);
-	free(model);
+	model_free(model);
 }
 
 static void assert_fields_equal(const struct sparse_field *a, const struct sparse_field *b)
 {
-	assert_int_equal(a->rows, b->rows);
-	assert_int_equal(a->columns, b->columns);
 	assert_int_equal(a->count, b->count);
 	if (!a->count)
 		return;
@@ -117,6 +103,8 @@ static bp_status pack(const struct model *model, uint32_t budget, struct packed 
 	return BP_OK;
 }
 
+static uint32_t wanted_channels = 7;
+
 /* Decodes sections of layers below `layers`, as record_decode would. */
 static bp_status unpack(const struct packed *from, struct lattice_dims dims, uint32_t layers, struct model **out, bp_error *error)
 {
@@ -127,7 +115,10 @@ static bp_status unpack(const struct packed *from, struct lattice_dims dims, uin
 	model->dims = dims;
 	for (; count < from->sections.count && from->sections.entry[count].layer < layers; count++)
 		sections[count] = (struct section_bytes){ &from->sections.entry[count], from->sections.bytes[count].bytes };
-	status = PAPER_CODEC.decode(&from->head, sections, count, model, &failed, error);
+	model->profile = PROFILE_PAPER;
+	struct record_head head = from->head;
+	head.channels = wanted_channels;
+	status = PAPER_CODEC.decode(&head, sections, count, model, &failed, error);
 	if (status) {
 		model_drop(model);
 		return status;
@@ -136,38 +127,91 @@ static bp_status unpack(const struct packed *from, struct lattice_dims dims, uin
 	return BP_OK;
 }
 
+static void assert_channels_equal(const struct paper_channel *a, const struct paper_channel *b, struct lattice_dims dims)
+{
+	assert_true(a->scale == b->scale);
+	assert_memory_equal(a->marginal[0], b->marginal[0], dims.theta_h * sizeof(float));
+	assert_memory_equal(a->marginal[1], b->marginal[1], dims.theta_d * sizeof(float));
+	assert_memory_equal(a->marginal[2], b->marginal[2], dims.phi_d * sizeof(float));
+	assert_fields_equal(&a->hd, &b->hd);
+	assert_fields_equal(&a->hphi, &b->hphi);
+	assert_int_equal(a->slice_count, b->slice_count);
+	for (uint32_t i = 0; i < a->slice_count; i++)
+		assert_fields_equal(&a->slice[i], &b->slice[i]);
+}
+
 static void a_model_comes_back_equal(void **state)
 {
 	struct lattice_dims dims = { 90, 90, 180 };
-	struct model *model = model_make(dims, 61, 16, 64, 3000), *again = NULL;
+	struct model *model = model_make(dims, 16, 64, 60), *again = NULL;
 	struct packed packed;
 	(void)state;
-	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
+	assert_int_equal(pack(model, 200000, &packed, NULL), BP_OK);
 	assert_int_equal(packed.head.layer_count, 3);
 	assert_int_equal(packed.head.left_out, 0);
+	assert_int_equal(packed.sections.count, 12);
 	assert_int_equal(unpack(&packed, dims, 3, &again, NULL), BP_OK);
-	assert_true(again->paper->scale == model->paper->scale);
-	assert_memory_equal(again->paper->marginal[0], model->paper->marginal[0], 90 * sizeof(float));
-	assert_memory_equal(again->paper->marginal[2], model->paper->marginal[2], 180 * sizeof(float));
-	assert_fields_equal(&again->paper->hd, &model->paper->hd);
-	assert_fields_equal(&again->paper->hphi, &model->paper->hphi);
-	assert_int_equal(again->paper->slice_count, 61);
-	for (int i = 0; i < 61; i++)
-		assert_fields_equal(&again->paper->slice[i], &model->paper->slice[i]);
+	for (int c = 0; c < 3; c++) {
+		assert_int_equal(again->paper->channel[c].slice_count, 61);
+		assert_channels_equal(&again->paper->channel[c], &model->paper->channel[c], dims);
+	}
 	model_drop(again);
 	section_list_free(&packed.sections);
 	model_drop(model);
 }
 
-/* The largest record: every coefficient that the fractions allow, at random places, with random levels of 15 bits. */
+/* Sections say whose they are; with those of one channel alone the others are empty, and a table has its values in all three. */
+static void a_channel_decodes_alone(void **state)
+{
+	struct lattice_dims dims = { 8, 9, 10 };
+	struct model *model = model_make(dims, 4, 4, 30), *again = NULL;
+	struct packed packed, alone = { .head = { .layer_count = 3 } };
+	struct expansion all, one;
+	(void)state;
+	for (int c = 0; c < 3; c++)
+		model->colour[c] = (struct colour_fit){ 0.25 * c, 1 + c, 1, 1, 0 };
+	assert_int_equal(pack(model, 200000, &packed, NULL), BP_OK);
+	assert_int_equal(expansion_alloc(dims, &all, NULL), BP_OK);
+	assert_int_equal(expansion_alloc(dims, &one, NULL), BP_OK);
+	model->layer_count = 3;
+	assert_int_equal(model_expand(model, 0, &all, NULL), BP_OK);
+	for (uint32_t c = 0; c < 3; c++) {
+		alone.sections.count = 0;
+		for (uint32_t i = 0; i < packed.sections.count; i++)
+			if (packed.sections.entry[i].flags & SECTION_ONLY_R << c) {
+				alone.sections.entry[alone.sections.count] = packed.sections.entry[i];
+				alone.sections.bytes[alone.sections.count++] = packed.sections.bytes[i];
+			}
+		assert_int_equal(alone.sections.count, 4);
+		wanted_channels = 7;
+		assert_int_equal(unpack(&alone, dims, 3, &again, NULL), BP_ERROR_CORRUPT);
+		wanted_channels = 1u << c;
+		assert_int_equal(unpack(&alone, dims, 3, &again, NULL), BP_OK);
+		wanted_channels = 7;
+		assert_channels_equal(&again->paper->channel[c], &model->paper->channel[c], dims);
+		memcpy(again->colour, model->colour, sizeof again->colour);
+		again->layer_count = 3;
+		assert_int_equal(model_expand(again, 0, &one, NULL), BP_OK);
+		for (int k = 0; k < 3; k++)
+			for (size_t i = 0; i < lattice_cells(dims); i++)
+				assert_true(fabs(one.unit * (double)one.rgb[k][i] - all.unit * (double)all.rgb[c][i]) <= 1e-6 * all.unit * (double)all.rgb[c][i]);
+		model_drop(again);
+	}
+	expansion_free(&all);
+	expansion_free(&one);
+	section_list_free(&packed.sections);
+	model_drop(model);
+}
+
+/* The largest record: every coefficient that the fractions allow, at random places, with random levels of 20 bits. */
 static void the_hardest_model_fits_the_papers_size(void **state)
 {
 	struct lattice_dims dims = { 90, 90, 180 };
-	struct model *model = model_make(dims, 61, 16, 64, 32767);
+	struct model *model = model_make(dims, 16, 64, PAPER_LEVEL_MAX);
 	struct packed packed;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
-	assert_true(packed.record_bytes <= 60400);
+	assert_true(packed.record_bytes <= 60400 && packed.record_bytes > 59000);
 	section_list_free(&packed.sections);
 	model_drop(model);
 }
@@ -175,17 +219,16 @@ static void the_hardest_model_fits_the_papers_size(void **state)
 static void pairs_that_are_1_take_no_bytes(void **state)
 {
 	struct lattice_dims dims = { 8, 8, 8 };
-	struct model *model = model_make(dims, 8, 0, 0, 100), *again = NULL;
+	struct model *model = model_make(dims, 0, 0, 100), *again = NULL;
 	struct packed packed;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
-	assert_int_equal(packed.sections.count, 1);
+	assert_int_equal(packed.sections.count, 3);
 	assert_int_equal(packed.head.layer_count, 1);
 	assert_int_equal(packed.head.left_out, 7);
 	assert_int_equal(unpack(&packed, dims, 1, &again, NULL), BP_OK);
-	assert_int_equal(again->paper->hd.count, 0);
-	assert_int_equal(again->paper->slice_count, 1);
-	assert_int_equal(again->paper->slice[0].count, 0);
+	assert_int_equal(again->paper->channel[1].hd.count, 0);
+	assert_int_equal(again->paper->channel[1].slice_count, 0);
 	model_drop(again);
 	section_list_free(&packed.sections);
 	model_drop(model);
@@ -194,56 +237,69 @@ static void pairs_that_are_1_take_no_bytes(void **state)
 static void the_second_layer_adds_the_pairs_only(void **state)
 {
 	struct lattice_dims dims = { 8, 8, 8 };
-	struct model *model = model_make(dims, 5, 4, 4, 100), *again = NULL;
+	struct model *model = model_make(dims, 4, 4, 100), *again = NULL;
 	struct packed packed;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
 	assert_int_equal(unpack(&packed, dims, 2, &again, NULL), BP_OK);
-	assert_fields_equal(&again->paper->hd, &model->paper->hd);
-	assert_int_equal(again->paper->slice_count, 1);
+	assert_fields_equal(&again->paper->channel[2].hd, &model->paper->channel[2].hd);
+	assert_int_equal(again->paper->channel[2].slice_count, 0);
 	model_drop(again);
 	section_list_free(&packed.sections);
 	model_drop(model);
 }
 
-static void a_small_budget_drops_the_smallest_levels(void **state)
+/* Steps grow by one factor in every slice, so the smallest levels go first and none is coarser than half a step. */
+static void a_small_budget_coarsens_all_alike(void **state)
 {
 	struct lattice_dims dims = { 90, 90, 180 };
-	struct model *model = model_make(dims, 61, 16, 64, 3000), *again = NULL;
-	static const uint32_t budgets[] = { 30000, 10000, 4000 };
+	struct model *model = model_make(dims, 16, 64, 3000), *again = NULL;
+	static const uint32_t budgets[] = { 60400, 30000, 10000, 4000 };
 	struct packed packed;
 	bp_error error;
 	(void)state;
-	for (int i = 0; i < 3; i++) {
-		uint32_t at = 0;
-		int least = INT16_MAX;
+	for (int i = 0; i < 4; i++) {
 		assert_int_equal(pack(model, budgets[i], &packed, NULL), BP_OK);
 		assert_true(packed.record_bytes <= budgets[i]);
-		assert_true(packed.record_bytes >= budgets[i] - budgets[i] / 20);
+		assert_true(packed.record_bytes >= budgets[i] - budgets[i] / 5); /* random levels of one size go all at once */
 		assert_int_equal(unpack(&packed, dims, 3, &again, NULL), BP_OK);
-		for (uint32_t k = 0; k < again->paper->hphi.count; k++)
-			if (abs(again->paper->hphi.level[k]) < least)
-				least = abs(again->paper->hphi.level[k]);
-		for (uint32_t k = 0; k < model->paper->hphi.count; k++) {
-			if (at < again->paper->hphi.count && again->paper->hphi.index[at] == model->paper->hphi.index[k])
-				assert_int_equal(again->paper->hphi.level[at++], model->paper->hphi.level[k]);
-			else
-				assert_true(abs(model->paper->hphi.level[k]) <= least);
+		for (uint32_t s = 0; s < again->paper->channel[0].slice_count; s++) {
+			const struct sparse_field *from = &model->paper->channel[0].slice[s], *to = &again->paper->channel[0].slice[s];
+			const double old = (double)paper_step(from->step), new = to->count ? (double)paper_step(to->step) : INFINITY;
+			uint32_t at = 0;
+			for (uint32_t k = 0; to->count && k < from->count; k++) {
+				const bool kept = at < to->count && to->index[at] == from->index[k];
+				assert_true(fabs(from->level[k] * old - (kept ? to->level[at] * new : 0)) <= 0.5000001 * new);
+				at += kept;
+			}
+			assert_int_equal(at, to->count);
 		}
-		assert_int_equal(at, again->paper->hphi.count);
 		model_drop(again);
 		section_list_free(&packed.sections);
 	}
-	assert_int_equal(pack(model, 1000, &packed, &error), BP_ERROR_LIMIT);
-	assert_non_null(strstr(error.message, "at least 1"));
+	assert_int_equal(pack(model, 2000, &packed, &error), BP_ERROR_LIMIT);
+	assert_non_null(strstr(error.message, "at least 2"));
 	section_list_free(&packed.sections);
 	model_drop(model);
+}
+
+/* A marginal comes back to a third of a thousandth, 0 as 0, and the ends of the range stay in it. */
+static void marginals_are_stored_to_a_third_of_a_thousandth(void **state)
+{
+	(void)state;
+	assert_true(paper_coded(0) == 0 && paper_code(0) == 0 && paper_coded(PAPER_STEP_ONE) == 1);
+	assert_int_equal(paper_code(1e-30f), 1);
+	assert_int_equal(paper_code(1e30f), 65535);
+	for (float v = 1e-9f; v < 1e9f; v *= 1.037f)
+		assert_true(fabsf(paper_coded(paper_code(v)) / v - 1) < 3.4e-4f);
+	for (uint32_t code = 1; code < 65536; code += 7)
+		assert_int_equal(paper_code(paper_coded((uint16_t)code)), code);
 }
 
 static void damaged_sections_never_crash_the_decoder(void **state)
 {
 	struct lattice_dims dims = { 8, 8, 8 };
-	struct model *model = model_make(dims, 5, 4, 4, 100), *again = NULL;
+	struct model *model = model_make(dims, 4, 4, 100), *again = NULL;
 	struct packed packed;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
@@ -270,16 +326,16 @@ static void a_claim_of_millions_of_coefficients_allocates_nothing(void **state)
 {
 	struct lattice_dims dims = { 256, 256, 256 };
 	struct packed packed;
-	struct model *model = model_make(dims, 1, 0, 0, 1), *again = NULL;
+	struct model *model = model_make(dims, 0, 0, 1), *again = NULL;
 	struct byte_buffer *out;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
 	packed.head.left_out = 6;
-	out = section_add(&packed.sections, SECTION_PAIR_HD, 1, 1, 0, 1, NAN);
-	write_u32(out, 60000);
-	write_f32(out, 1);
+	out = section_add(&packed.sections, SECTION_PAIR_HD, 2, 1, 0, 1, NAN);
+	write_u16(out, PAPER_STEP_ONE);
+	write_u32(out, UINT32_MAX);
 	write_zeros(out, 100);
-	packed.sections.entry[1].bytes = (uint32_t)out->count;
+	packed.sections.entry[3].bytes = (uint32_t)out->count;
 	assert_int_equal(unpack(&packed, dims, 1, &again, NULL), BP_ERROR_CORRUPT);
 	section_list_free(&packed.sections);
 	model_drop(model);
@@ -289,10 +345,12 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_model_comes_back_equal),
+		cmocka_unit_test(a_channel_decodes_alone),
 		cmocka_unit_test(the_hardest_model_fits_the_papers_size),
 		cmocka_unit_test(pairs_that_are_1_take_no_bytes),
 		cmocka_unit_test(the_second_layer_adds_the_pairs_only),
-		cmocka_unit_test(a_small_budget_drops_the_smallest_levels),
+		cmocka_unit_test(a_small_budget_coarsens_all_alike),
+		cmocka_unit_test(marginals_are_stored_to_a_third_of_a_thousandth),
 		cmocka_unit_test(damaged_sections_never_crash_the_decoder),
 		cmocka_unit_test(a_claim_of_millions_of_coefficients_allocates_nothing),
 	};

@@ -301,21 +301,22 @@ static void a_channel_that_is_mostly_dark_has_a_line_of_zero(void **user)
 {
 	(void)user;
 	struct lattice l;
-	struct colour_fit colour[3];
-	float achromatic[512];
+	struct colour_fit colour;
+	float model[512];
 	assert_int_equal(lattice_alloc((struct lattice_dims){8, 8, 8}, &l, NULL), BP_OK);
 	for (unsigned seed = 1; seed <= 40; seed++) {
 		state = seed;
 		for (size_t i = 0; i < 512; i++) {
 			const bool dark = uniform() < 0.75;
-			achromatic[i] = (float)(0.1 + uniform());
+			model[i] = (float)(0.1 + uniform());
 			for (int c = 0; c < 3; c++)
 				l.rgb[c][i] = dark ? (seed % 2 ? DBL_TRUE_MIN : 0) : uniform() + 0.1;
 		}
 		lattice_validate(&l);
-		assert_int_equal(robust_fit_colour(&l, achromatic, 0.7, colour, NULL), BP_OK);
-		for (int c = 0; c < 3; c++)
-			assert_true(colour[c].diffuse == 0 && colour[c].specular == 0);
+		for (int c = 0; c < 3; c++) {
+			assert_int_equal(robust_fit_channel(&l, c, model, 0.7, &colour, NULL), BP_OK);
+			assert_true(colour.diffuse == 0 && colour.specular == 0 && colour.converged);
+		}
 	}
 	lattice_free(&l);
 }

@@ -54,7 +54,7 @@ static void same_values(const struct model *model, enum table_form form, int cha
 		table_evaluate(direct, wi, wo, a);
 		table_evaluate(by_way, wi, wo, b);
 		assert_memory_equal(a, b, sizeof a);
-		assert_true(a[0] > 0);
+		assert_true(a[0] >= 0);
 	}
 	expansion_free(&expansion);
 	table_free(direct);
@@ -78,6 +78,9 @@ static void half_values(const struct model *model, enum table_form form, int cha
 	assert_int_equal(model_expand_half(model, 0, &expansion, NULL), BP_OK);
 	assert_int_equal(table_build_model(model, true, form, channels, &half, NULL), BP_OK);
 	assert_int_equal(table_build_model(model, false, form, channels, &whole, NULL), BP_OK);
+	double most = 0; /* beside it a value near 0 is rounded as its neighbours are */
+	for (size_t n = 0; n < lattice_cells(dims); n++)
+		most = fmax(most, expansion.unit * (double)expansion.rgb[1][n]);
 	for (int m = 0; m < 300; m++) {
 		struct lattice_point at;
 		directions(m, wi, wo);
@@ -86,7 +89,7 @@ static void half_values(const struct model *model, enum table_form form, int cha
 		double want = trilinear(&expansion, 1, at, 0.25);
 		if (channels == 1)
 			want = (trilinear(&expansion, 0, at, 0.25) + want + trilinear(&expansion, 2, at, 0.25)) / 3;
-		assert_true(fabs((double)a[1] - want) <= within * want);
+		assert_true(fabs((double)a[1] - want) <= within * (want + 1e-3 * most));
 	}
 	for (uint32_t i = 0; i < dims.theta_h; i++)
 		for (uint32_t j = 0; j < dims.theta_d; j++)
@@ -96,7 +99,7 @@ static void half_values(const struct model *model, enum table_form form, int cha
 				seen++;
 				table_evaluate(half, wi, wo, a);
 				table_evaluate(whole, wi, wo, b);
-				assert_true(fabsf(a[1] - b[1]) <= 2 * (float)within * b[1]);
+				assert_true(fabsf(a[1] - b[1]) <= 2 * (float)(within * ((double)b[1] + 1e-3 * most)));
 			}
 	assert_true(seen > 100);
 	expansion_free(&expansion);

@@ -13,12 +13,12 @@
 static void make_marginals(const char *path) { vector_one(path, SHAPE_MARGINALS); }
 static void make_pairs(const char *path) { vector_one(path, SHAPE_PAIRS); }
 static void make_slices(const char *path) { vector_one(path, SHAPE_FULL); }
-static void make_all_slices(const char *path) { vector_one(path, (struct vector_shape){ { 4, 4, 4 }, 0, 5, 4, 6, 1 }); }
-static void make_odd(const char *path) { vector_one(path, (struct vector_shape){ { 7, 5, 11 }, 9, 9, 5, 8, 0.75 }); }
-static void make_larger(const char *path) { vector_one(path, (struct vector_shape){ { 9, 16, 8 }, 20, 18, 6, 14, 3 }); }
-static void make_bright(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 4, 5, 1e300 }); }
-static void make_dark(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 4, 5, 1e-300 }); }
-static void make_zero(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 4, 5, 0 }); }
+static void make_no_hd(const char *path) { vector_one(path, (struct vector_shape){ { 4, 4, 4 }, 0, 5, 6, 1 }); }
+static void make_odd(const char *path) { vector_one(path, (struct vector_shape){ { 7, 5, 11 }, 9, 9, 8, 0.75 }); }
+static void make_larger(const char *path) { vector_one(path, (struct vector_shape){ { 9, 16, 8 }, 20, 18, 14, 3 }); }
+static void make_bright(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 5, 1e300 }); }
+static void make_dark(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 5, 1e-300 }); }
+static void make_zero(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 5, 0 }); }
 
 static void make_empty(const char *path)
 {
@@ -80,8 +80,9 @@ static void make_dropped_layer(const char *path)
 static const struct vector VECTORS[] = {
 	{ "good-marginals", BP_OK, "One material, 4x4x4, all pairs left out.", make_marginals },
 	{ "good-pairs", BP_OK, "4x5x6 with both unconditional pairs, two layers.", make_pairs },
-	{ "good-slices", BP_OK, "6x5x8 with everything, three layers; the last of four slices is shared, one is empty.", make_slices },
-	{ "good-all-slices", BP_OK, "4x4x4 with a slice for every theta_h and c_hd left out.", make_all_slices },
+	{ "good-slices", BP_OK, "6x5x8 with everything, three layers; the last of five slices is shared, one is empty.", make_slices },
+	{ "good-no-hd", BP_OK, "4x4x4 with c_hd left out.", make_no_hd },
+	{ "good-one-layer", BP_OK, "6x5x8 with everything in one layer: the sections say what is there, not the layers.", make_one_layer },
 	{ "good-odd-extents", BP_OK, "7x5x11: transform planes larger than the fields.", make_odd },
 	{ "good-larger", BP_OK, "9x16x8: one to three wavelet levels.", make_larger },
 	{ "good-bright", BP_OK, "Values around 1e300.", make_bright },
@@ -105,6 +106,7 @@ static const struct vector VECTORS[] = {
 	{ "unsupported-record-version", BP_ERROR_UNSUPPORTED, "A record of version 2.", make_record_version },
 	{ "unsupported-profile", BP_ERROR_UNSUPPORTED, "Profile 77.", make_profile },
 	{ "unsupported-section", BP_ERROR_UNSUPPORTED, "A required section of an unknown type.", make_required_section },
+	{ "unsupported-retired", BP_ERROR_UNSUPPORTED, "A record of the paper's profile as codec versions up to 3 wrote it: to be packed again.", make_retired },
 	{ "unsupported-codec", BP_ERROR_UNSUPPORTED, "A known type of section with an unknown codec, required.", make_codec },
 	{ "bad-empty-file", BP_ERROR_NOT_OURS, "No byte at all.", make_empty_file },
 	{ "bad-text-mode", BP_ERROR_NOT_OURS, "CR LF became LF on the way, everywhere.", make_text_mode },
@@ -131,13 +133,13 @@ static const struct vector VECTORS[] = {
 	{ "bad-extents", BP_ERROR_CORRUPT, "A lattice of 1024x1024x1024 cells.", make_extents },
 	{ "bad-section-order", BP_ERROR_CORRUPT, "The sections' layers descend.", make_section_order },
 	{ "bad-section-bytes", BP_ERROR_CORRUPT, "A section that claims 4 GB.", make_section_bytes },
-	{ "bad-nan", BP_ERROR_CORRUPT, "A marginal that is not a number, under a checksum that holds.", make_nan },
+	{ "bad-nan", BP_ERROR_CORRUPT, "A scale that is not a number, under a checksum that holds.", make_nan },
 	{ "bad-overflow", BP_ERROR_CORRUPT, "Scale and specular parameter whose product overflows.", make_overflow },
 	{ "bad-marginal-bytes", BP_ERROR_CORRUPT, "A section of marginals with a byte too many.", make_marginal_bytes },
 	{ "bad-coefficients", BP_ERROR_CORRUPT, "A pair that claims more coefficients than its bytes can hold.", make_coefficients },
 	{ "bad-stream-short", BP_ERROR_CORRUPT, "A range coder stream without its last byte.", make_stream_short },
 	{ "bad-stream-long", BP_ERROR_CORRUPT, "A range coder stream with a byte too many.", make_stream_long },
-	{ "bad-slices", BP_ERROR_CORRUPT, "More slices than theta_h has cells.", make_slice_count },
+	{ "bad-step", BP_ERROR_CORRUPT, "A step beyond the largest.", make_step },
 	{ "bad-section-missing", BP_ERROR_CORRUPT, "No marginals.", make_section_missing },
 	{ "bad-section-twice", BP_ERROR_CORRUPT, "The marginals twice.", make_section_twice },
 	{ "bad-spectral-planes", BP_ERROR_CORRUPT, "25 bit planes.", make_spectral_planes },

@@ -27,10 +27,11 @@ FIXTURE uint32_t vector_random(uint32_t n)
 	return (uint32_t)((uint64_t)vector_state * n >> 32);
 }
 
-FIXTURE void vector_field(struct sparse_field *field, uint32_t rows, uint32_t columns, uint32_t count, float step)
+FIXTURE void vector_field(struct lattice_dims dims, enum paper_field kind, uint32_t count, uint16_t step, struct sparse_field *field)
 {
-	uint32_t next = 0, room = rows * columns;
-	*field = (struct sparse_field){ .rows = rows, .columns = columns, .count = count, .step = count ? step : 0 };
+	uint32_t next = 0, room = paper_plane_cells(dims, kind);
+	*field = (struct sparse_field){ .count = count, .step = count ? step : 0 };
+	paper_field_extents(dims, kind, &field->rows, &field->columns);
 	if (!count)
 		return;
 	field->index = malloc(count * sizeof *field->index);
@@ -38,64 +39,54 @@ FIXTURE void vector_field(struct sparse_field *field, uint32_t rows, uint32_t co
 	for (uint32_t i = 0; i < count; i++) {
 		next += i ? 1 + vector_random((room - next) / (count - i) * 2 / 3 + 1) : 0;
 		field->index[i] = next;
-		field->level[i] = (int16_t)((int)vector_random(101) - 50);
+		field->level[i] = (int32_t)vector_random(101) - 50;
 		if (field->level[i] == 0)
 			field->level[i] = 1;
 	}
-	field->level[0] = (int16_t)(600 + vector_random(100)); /* the coarse cells hold the mean */
+	field->level[0] = (int32_t)(600 + vector_random(100)); /* the coarse cells hold the mean */
 }
 
 struct vector_shape {
 	struct lattice_dims dims;
-	uint32_t hd, hphi, slices, per_slice; /* coefficients of the pairs; slices and their coefficients */
+	uint32_t hd, hphi, per_slice; /* coefficients of the pairs and of each slice */
 	double scale;
 };
 
-/* A model of the paper's profile; free with vector_model_free. */
+/* A model of the paper's profile, every channel another; free with vector_model_free. */
 FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 {
 	struct model *model = calloc(1, sizeof *model);
 	struct paper_model *paper = calloc(1, sizeof *paper);
-	uint32_t extents[3] = { shape.dims.theta_h, shape.dims.theta_d, shape.dims.phi_d };
+	const uint32_t extents[3] = { shape.dims.theta_h, shape.dims.theta_d, shape.dims.phi_d };
+	const uint16_t step = PAPER_STEP_ONE - 7 * 256;
 	vector_state = seed;
 	model->profile = PROFILE_PAPER;
 	model->dims = shape.dims;
 	model->horizon_limit = -0.0625;
 	model->paper = paper;
 	paper->dims = shape.dims;
-	paper->scale = shape.scale;
-	for (int c = 0; c < 3; c++)
+	for (int c = 0; c < 3; c++) {
+		struct paper_channel *channel = &paper->channel[c];
 		model->colour[c] = (struct colour_fit){ shape.scale * (0.125 - 0.0625 * c), 1.25 - 0.25 * c, 9u + (uint32_t)c, c != 1, 0.03125 * c };
-	for (int axis = 0; axis < 3; axis++) {
-		paper->marginal[axis] = malloc(extents[axis] * sizeof(float));
-		for (uint32_t i = 0; i < extents[axis]; i++)
-			paper->marginal[axis][i] = (float)(256 + vector_random(512)) / 512.0f;
+		channel->scale = shape.scale;
+		for (int axis = 0; axis < 3; axis++) {
+			channel->marginal[axis] = malloc(extents[axis] * sizeof(float));
+			for (uint32_t i = 0; i < extents[axis]; i++)
+				channel->marginal[axis][i] = paper_coded((uint16_t)(PAPER_STEP_ONE - 1000 + vector_random(2000)));
+		}
+		vector_field(shape.dims, PAPER_HD, shape.hd, step, &channel->hd);
+		vector_field(shape.dims, PAPER_HPHI, shape.hphi, step, &channel->hphi);
+		channel->slice_count = paper_shared_from(shape.dims.theta_h) + 1;
+		channel->slice = calloc(channel->slice_count, sizeof *channel->slice);
+		for (uint32_t i = 0; i < channel->slice_count; i++)
+			vector_field(shape.dims, PAPER_SLICE, i % 3 == 2 ? 0 : shape.per_slice, step, &channel->slice[i]);
 	}
-	vector_field(&paper->hd, extents[0], extents[1], shape.hd, 1.0f / 128);
-	vector_field(&paper->hphi, extents[0], extents[2], shape.hphi, 1.0f / 128);
-	paper->slice_count = shape.slices;
-	paper->slice = calloc(shape.slices, sizeof *paper->slice);
-	for (uint32_t i = 0; i < shape.slices; i++)
-		vector_field(&paper->slice[i], extents[1], extents[2], i % 3 == 2 ? 0 : shape.per_slice, 1.0f / 128);
 	return model;
 }
 
 FIXTURE void vector_model_free(struct model *model)
 {
-	struct paper_model *paper = model->paper;
-	for (int axis = 0; axis < 3; axis++)
-		free(paper->marginal[axis]);
-	free(paper->hd.index);
-	free(paper->hd.level);
-	free(paper->hphi.index);
-	free(paper->hphi.level);
-	for (uint32_t i = 0; i < paper->slice_count; i++) {
-		free(paper->slice[i].index);
-		free(paper->slice[i].level);
-	}
-	free(paper->slice);
-	free(paper);
-	free(model);
+	model_free(model);
 }
 
 /* The model as sections, and a head that fits them; the caller may change either before record_write. */
@@ -124,9 +115,9 @@ FIXTURE uint8_t *vector_record(const char *name, struct vector_shape shape, size
 	return record;
 }
 
-static const struct vector_shape SHAPE_MARGINALS = { { 4, 4, 4 }, 0, 0, 1, 0, 0.5 };
-static const struct vector_shape SHAPE_PAIRS = { { 4, 5, 6 }, 6, 7, 1, 0, 0.25 };
-static const struct vector_shape SHAPE_FULL = { { 6, 5, 8 }, 8, 9, 4, 5, 2.0 };
+static const struct vector_shape SHAPE_MARGINALS = { { 4, 4, 4 }, 0, 0, 0, 0.5 };
+static const struct vector_shape SHAPE_PAIRS = { { 4, 5, 6 }, 6, 7, 0, 0.25 };
+static const struct vector_shape SHAPE_FULL = { { 6, 5, 8 }, 8, 9, 5, 2.0 };
 
 /* An archive of records given as bytes; frees them. */
 FIXTURE void vector_archive(const char *path, uint8_t *const *records, const size_t *bytes, size_t count)

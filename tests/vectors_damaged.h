@@ -233,7 +233,7 @@ FIXTURE void make_extents(const char *path) { head_with(path, 24, 0x040004000400
 FIXTURE void make_codec(const char *path) { head_with(path, 208 + 96 + 32 + 2, 9, 2, "material"); }
 FIXTURE void make_section_order(const char *path) { head_with(path, 208 + 96 + 6, 2, 2, "material"); }
 FIXTURE void make_section_bytes(const char *path) { head_with(path, 208 + 96 + 16, UINT32_MAX, 4, "material"); }
-FIXTURE void make_name(const char *path) { head_with(path, 208 + 96 + 4 * 32 + 3, '/', 1, "mat/rial"); }
+FIXTURE void make_name(const char *path) { head_with(path, 208 + 96 + 12 * 32 + 3, '/', 1, "mat/rial"); }
 
 /* One material whose sections are changed before the record is written. */
 FIXTURE void sections_change(const char *path, void change(struct record_head *head, struct section_list *sections))
@@ -252,7 +252,7 @@ FIXTURE void sections_change(const char *path, void change(struct record_head *h
 FIXTURE void change_nan(struct record_head *head, struct section_list *sections)
 {
 	(void)head;
-	put(sections->bytes[0].bytes + 8, 0x7FC00000, 4);
+	put(sections->bytes[0].bytes, UINT64_C(0x7FF8000000000000), 8);
 }
 
 FIXTURE void change_marginal_bytes(struct record_head *head, struct section_list *sections)
@@ -264,26 +264,26 @@ FIXTURE void change_marginal_bytes(struct record_head *head, struct section_list
 FIXTURE void change_coefficients(struct record_head *head, struct section_list *sections)
 {
 	(void)head;
-	put(sections->bytes[1].bytes, 36, 4); /* as many as the plane has cells */
-	sections->bytes[1].count = 8 + 4;
+	put(sections->bytes[3].bytes + 2, UINT32_MAX, 4); /* a number of 24 bits */
+	sections->bytes[3].count = 2 + 4;
 }
 
 FIXTURE void change_stream_short(struct record_head *head, struct section_list *sections)
 {
 	(void)head;
-	sections->bytes[2].count--;
+	sections->bytes[6].count--;
 }
 
 FIXTURE void change_stream_long(struct record_head *head, struct section_list *sections)
 {
 	(void)head;
-	write_u8(&sections->bytes[2], 0);
+	write_u8(&sections->bytes[6], 0);
 }
 
-FIXTURE void change_slice_count(struct record_head *head, struct section_list *sections)
+FIXTURE void change_step(struct record_head *head, struct section_list *sections)
 {
 	(void)head;
-	put(sections->bytes[3].bytes, 7, 4);
+	put(sections->bytes[9].bytes, PAPER_STEP_MOST + 1, 2);
 }
 
 FIXTURE void change_section_missing(struct record_head *head, struct section_list *sections)
@@ -295,7 +295,7 @@ FIXTURE void change_section_missing(struct record_head *head, struct section_lis
 
 FIXTURE void change_section_twice(struct record_head *head, struct section_list *sections)
 {
-	struct byte_buffer *again = section_add(sections, SECTION_MARGINALS, 0, 1, 2, SECTION_REQUIRED, NAN);
+	struct byte_buffer *again = section_add(sections, SECTION_MARGINALS, 0, 2, 2, SECTION_REQUIRED, NAN);
 	(void)head;
 	write_bytes(again, sections->bytes[0].bytes, sections->bytes[0].count);
 }
@@ -303,23 +303,42 @@ FIXTURE void change_section_twice(struct record_head *head, struct section_list 
 /* specular x scale beyond the range of a double */
 FIXTURE void change_overflow(struct record_head *head, struct section_list *sections)
 {
-	head->colour[1].specular = 1e200;
+	head->colour[0].specular = 1e200;
 	put(sections->bytes[0].bytes, UINT64_C(0x6974E718D7D7625A), 8); /* 1e200 */
 }
 
 /* Everything as large as it may be: values meet their limit, or are 0. */
 FIXTURE void change_limits(struct record_head *head, struct section_list *sections)
 {
-	uint8_t *marginals = sections->bytes[0].bytes;
 	head->colour[0] = (struct colour_fit){ 1e308, 0, 1, 1, 0 };
 	head->colour[1] = (struct colour_fit){ -1e308, 1e154, 1, 1, 0 };
 	head->colour[2] = (struct colour_fit){ 0, 1e150, 1, 1, 0 };
-	put(marginals, UINT64_C(0x5FE3E9F5B0F5A5A5), 8); /* about 4.8e153 */
-	for (int i = 0; i < 6 + 5 + 8; i++)
-		put(marginals + 8 + 4 * i, i % 3 ? 0x7F7FFFFF : 0, 4); /* the largest float, and 0 */
-	put(sections->bytes[1].bytes + 4, 0x7F7FFFFF, 4); /* the step of c_hd */
+	for (int c = 0; c < 3; c++) {
+		uint8_t *marginals = sections->bytes[c].bytes;
+		put(marginals, UINT64_C(0x5FE3E9F5B0F5A5A5), 8); /* about 4.8e153 */
+		for (int i = 0; i < 6 + 5 + 8; i++)
+			put(marginals + 8 + 2 * i, i % 3 ? 0xFFFF : 0, 2); /* the largest, and 0 */
+		put(sections->bytes[3 + c].bytes, PAPER_STEP_MOST, 2); /* the step of c_hd */
+	}
 }
 
+/* As codec versions up to 3 wrote: one density for all channels. */
+FIXTURE void change_retired(struct record_head *head, struct section_list *sections)
+{
+	head->codec_version = 3;
+	sections->entry[0].version = 1;
+}
+
+/* All that is there in one layer. */
+FIXTURE void change_one_layer(struct record_head *head, struct section_list *sections)
+{
+	head->layer_count = 1;
+	for (uint32_t i = 0; i < sections->count; i++)
+		sections->entry[i].layer = 0;
+}
+
+FIXTURE void make_retired(const char *path) { sections_change(path, change_retired); }
+FIXTURE void make_one_layer(const char *path) { sections_change(path, change_one_layer); }
 FIXTURE void make_nan(const char *path) { sections_change(path, change_nan); }
 FIXTURE void make_overflow(const char *path) { sections_change(path, change_overflow); }
 FIXTURE void make_limits(const char *path) { sections_change(path, change_limits); }
@@ -327,7 +346,7 @@ FIXTURE void make_marginal_bytes(const char *path) { sections_change(path, chang
 FIXTURE void make_coefficients(const char *path) { sections_change(path, change_coefficients); }
 FIXTURE void make_stream_short(const char *path) { sections_change(path, change_stream_short); }
 FIXTURE void make_stream_long(const char *path) { sections_change(path, change_stream_long); }
-FIXTURE void make_slice_count(const char *path) { sections_change(path, change_slice_count); }
+FIXTURE void make_step(const char *path) { sections_change(path, change_step); }
 FIXTURE void make_section_missing(const char *path) { sections_change(path, change_section_missing); }
 FIXTURE void make_section_twice(const char *path) { sections_change(path, change_section_twice); }
 

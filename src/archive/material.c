@@ -33,7 +33,7 @@ static bp_status options_check(const bp_load_options *options, bp_error *error)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
 	if (options->form != BP_FORM_EXPANDED && options->form != BP_FORM_COMPACT && options->form != BP_FORM_PREVIEW)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no memory form %d", (int)options->form);
-	if (options->colour != BP_COLOUR_RGB && options->colour != BP_COLOUR_MEAN)
+	if ((int)options->colour < BP_COLOUR_RGB || (int)options->colour > BP_COLOUR_B)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no colour option %d", (int)options->colour);
 	if (options->allocator && (!options->allocator->alloc || !options->allocator->release))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an allocator needs both of its functions");
@@ -50,6 +50,22 @@ static void colour_sections_drop(struct record_head *head)
 		if (!(head->sections[n].flags & SECTION_COLOUR))
 			head->sections[kept++] = head->sections[n];
 	head->section_count = kept;
+}
+
+/* One channel alone does without the sections of the others. */
+static bp_status channel_sections_keep(struct record_head *head, uint32_t channel, bp_error *error)
+{
+	const uint32_t all = (uint32_t)SECTION_ONLY_R * 7, wanted = (uint32_t)SECTION_ONLY_R << channel;
+	uint32_t kept = 0;
+
+	if (head->profile != PROFILE_PAPER)
+		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "%s: records of this profile do not keep the channels apart", head->name);
+	for (uint32_t n = 0; n < head->section_count; n++)
+		if (!(head->sections[n].flags & all) || head->sections[n].flags & wanted)
+			head->sections[kept++] = head->sections[n];
+	head->section_count = kept;
+	head->channels = 1u << channel;
+	return BP_OK;
 }
 
 static uint32_t bytes_to_read(const struct record_head *head, uint32_t layers)
@@ -138,6 +154,10 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	const uint32_t layers = record_layers_for(&head, options->max_log_rmse);
 	if (options->colour == BP_COLOUR_MEAN)
 		colour_sections_drop(&head);
+	else if (options->colour != BP_COLOUR_RGB)
+		status = channel_sections_keep(&head, options->colour - BP_COLOUR_R, error);
+	if (status)
+		return status;
 	environment_enter(&before);
 	const bp_allocator *allocator_before = allocator_enter(options->allocator);
 	status = material_fill(archive, &entry, &head, layers, options, &material, error);

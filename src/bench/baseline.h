@@ -54,6 +54,10 @@ struct baseline {
 extern const struct baseline BASELINE_PAPER, BASELINE_SPECTRAL;
 /* The analytic models: no budget, tens of bytes. */
 extern const struct baseline BASELINE_WARD, BASELINE_COOK_TORRANCE, BASELINE_EDWARDS;
+/* The same by relative instead of cosine-weighted error. */
+extern const struct baseline BASELINE_WARD_RELATIVE, BASELINE_COOK_TORRANCE_RELATIVE, BASELINE_EDWARDS_RELATIVE;
+/* Nothing at all: the floor. */
+extern const struct baseline BASELINE_BLACK;
 /* Data-driven models of the paper's authors. */
 extern const struct baseline BASELINE_ARCHIMEDEAN, BASELINE_TUCKER;
 /* General codecs. */

@@ -13,6 +13,7 @@ struct search {
 	const struct lobe_model *model;
 	const struct lobe_sample *sample;
 	double diffuse[3], specular[3]; /* of the last evaluation, in the sample's unit */
+	double *lobe;                   /* the lobe's values at the sample's cells */
 };
 
 static void shape_from_free(const struct lobe_model *model, const double *x, double *shape)
@@ -33,23 +34,26 @@ static double project(struct search *search, const double *shape)
 {
 	const struct lobe_sample *s = search->sample;
 	const double p = 1 / M_PI;
-	double l1 = 0, l2 = 0, y1[3] = {0}, y2[3] = {0}, yl[3] = {0}, sum = 0;
+	double sum = 0;
 
-	for (size_t n = 0; n < s->count; n++) {
-		double w = s->weight[n], l = search->model->value(shape, s->angles[n]);
-		l1 += w * l;
-		l2 += w * l * l;
-		for (int c = 0; c < 3; c++) {
-			double y = s->rgb[c][n];
-			y1[c] += w * y;
-			y2[c] += w * y * y;
-			yl[c] += w * y * l;
+	for (size_t n = 0; n < s->count; n++)
+		search->lobe[n] = search->model->value(shape, s->angles[n]);
+	for (int c = 0; c < 3; c++) {
+		const double *weight = s->relative ? s->relative + (size_t)c * s->count : s->weight;
+		double w0 = 0, l1 = 0, l2 = 0, y1 = 0, y2 = 0, yl = 0;
+		for (size_t n = 0; n < s->count; n++) {
+			const double w = weight[n], l = search->lobe[n], y = s->rgb[c][n];
+			w0 += w;
+			l1 += w * l;
+			l2 += w * l * l;
+			y1 += w * y;
+			y2 += w * y * y;
+			yl += w * y * l;
 		}
+		if (!isfinite(l2))
+			return HUGE_VAL;
+		sum += fmax(0, y2 - nonnegative_pair(p * p * w0, p * l1, l2, p * y1, yl, &search->diffuse[c], &search->specular[c]));
 	}
-	if (!isfinite(l2))
-		return HUGE_VAL;
-	for (int c = 0; c < 3; c++)
-		sum += fmax(0, y2[c] - nonnegative_pair(p * p, p * l1, l2, p * y1[c], yl[c], &search->diffuse[c], &search->specular[c]));
 	return sum;
 }
 
@@ -130,7 +134,7 @@ static void search_grid(struct search *search, struct start *kept)
 	}
 }
 
-bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, void **state, bp_error *error)
+bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective kind, void **state, bp_error *error)
 {
 	const uint32_t stride_d = (lattice->dims.theta_d + SAMPLES_D - 1) / SAMPLES_D;
 	const uint32_t stride_p = (lattice->dims.phi_d + SAMPLES_P - 1) / SAMPLES_P;
@@ -149,6 +153,13 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 		goto out;
 	if ((status = lobe_sample_take(lattice, THIN * stride_d, THIN * stride_p, &thin, NULL)))
 		thin = (struct lobe_sample){0}; /* so few valid cells: the dense sample serves for both */
+	if (kind == LOBE_RELATIVE && ((status = lobe_sample_make_relative(&dense, error)) || (thin.count && (status = lobe_sample_make_relative(&thin, error)))))
+		goto out;
+	search.lobe = malloc(dense.count * sizeof *search.lobe);
+	if (!search.lobe) {
+		status = error_memory(error, dense.count * sizeof *search.lobe);
+		goto out;
+	}
 	search.sample = thin.count ? &thin : &dense;
 	search_grid(&search, starts);
 	for (int n = 0; n < STARTS_KEPT; n++) {
@@ -179,6 +190,7 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 	out = NULL;
 	status = BP_OK;
 out:
+	free(search.lobe);
 	lobe_sample_free(&thin);
 	lobe_sample_free(&dense);
 	free(out);

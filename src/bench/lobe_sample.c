@@ -7,6 +7,9 @@
 /* cos 80 degrees: Ngan et al. leave out what lies beyond, where measurements are unreliable. */
 static const double COSINE_LIMIT = 0.17364817766693036;
 
+/* In 1/sr, as in the log RMSE: darker is not told apart. */
+static const double RELATIVE_OFFSET = 1e-3;
+
 /* The measure along theta_h of cell i: the integral of sin over [i^2, (i + 1)^2] / H^2 pi/2. */
 static double measure_h(uint32_t i, uint32_t extent)
 {
@@ -83,6 +86,21 @@ out:
 	return status;
 }
 
+bp_status lobe_sample_make_relative(struct lobe_sample *sample, bp_error *error)
+{
+	const double offset = RELATIVE_OFFSET / sample->unit;
+
+	sample->relative = malloc(3 * sample->count * sizeof *sample->relative);
+	if (!sample->relative)
+		return error_memory(error, 3 * sample->count * sizeof *sample->relative);
+	for (int c = 0; c < 3; c++)
+		for (size_t n = 0; n < sample->count; n++) {
+			const double b = sample->rgb[c][n] + offset;
+			sample->relative[(size_t)c * sample->count + n] = sample->weight[n] / (b * b);
+		}
+	return BP_OK;
+}
+
 double nonnegative_pair(double pp, double pl, double ll, double py, double ly, double *a, double *b)
 {
 	double det = pp * ll - pl * pl;
@@ -101,6 +119,8 @@ double nonnegative_pair(double pp, double pl, double ll, double py, double ly, d
 
 void lobe_sample_free(struct lobe_sample *sample)
 {
-	if (sample)
-		free(sample->angles);
+	if (!sample)
+		return;
+	free(sample->angles);
+	free(sample->relative);
 }

@@ -30,6 +30,8 @@ struct profile_codec {
 	uint32_t version; /* goes into the record's head; changes when the same input and options would give other bytes */
 	const struct section_kind *kinds;
 	uint32_t kind_count;
+	const struct section_kind *retired; /* kinds that earlier versions wrote and this one no longer reads */
+	uint32_t retired_count;
 	/*
 	 * Builds the profile's part of *model from the sections of the layers that are wanted, in file order; on failure
 	 * record_decode frees what has been attached with model_free. Offsets in errors count from the section's start

@@ -29,10 +29,10 @@ bp_status record_verify(const uint8_t *record, size_t count, struct record_head 
 	return BP_OK;
 }
 
-static bool kind_known(const struct profile_codec *codec, const struct record_section *entry)
+static bool kind_among(const struct section_kind *kinds, uint32_t count, const struct record_section *entry)
 {
-	for (uint32_t i = 0; i < codec->kind_count; i++)
-		if (codec->kinds[i].type == entry->type && codec->kinds[i].codec == entry->codec && codec->kinds[i].version == entry->version)
+	for (uint32_t i = 0; i < count; i++)
+		if (kinds[i].type == entry->type && kinds[i].codec == entry->codec && kinds[i].version == entry->version)
 			return true;
 	return false;
 }
@@ -63,7 +63,11 @@ static bp_status sections_fetch(const struct record_head *head, const struct pro
 	for (uint32_t i = 0; i < head->section_count && head->sections[i].layer < layers; i++) {
 		const struct record_section *entry = &head->sections[i];
 		bp_status status;
-		if (!kind_known(codec, entry)) {
+		if (!kind_among(codec->kinds, codec->kind_count, entry)) {
+			if (kind_among(codec->retired, codec->retired_count, entry))
+				return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
+				                 "%s: packed by an earlier version whose records of this profile are no longer read; pack the material again",
+				                 head->name);
 			if (entry->flags & SECTION_REQUIRED)
 				return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
 				                 "%s: a section of type %u, codec %u, version %u is required; a newer program is needed", head->name,

@@ -27,17 +27,19 @@ enum { RECORD_LAYERS_DROPPED = 0 };
 
 /* Types of section; 1..15 belong to the paper's profile, 16..31 to the spectral one. */
 enum section_type {
-	SECTION_MARGINALS = 1, /* scale and the three marginals */
+	SECTION_MARGINALS = 1, /* scale and the three marginals of channel R */
 	SECTION_PAIR_HD = 2,   /* c_hd */
 	SECTION_PAIR_HPHI = 3, /* c_hphi */
 	SECTION_SLICES = 4,    /* c_dphi|h */
+	SECTION_CHANNEL = 4,   /* G's types are this much higher, B's twice as much */
 	SECTION_FIELDS = 16,   /* what makes fields of levels, and a table of fields */
 	SECTION_PLANES = 17    /* bit planes of the levels, one section to a layer */
 };
 
 enum section_flag {
 	SECTION_REQUIRED = 1, /* a reader that does not know the type, codec or version must refuse the layer */
-	SECTION_COLOUR = 2    /* not needed for an achromatic load */
+	SECTION_COLOUR = 2,   /* not needed for an achromatic load */
+	SECTION_ONLY_R = 4    /* needed for channel R alone; for G and B twice and four times this */
 };
 
 /* The measured file a record was made from. */
@@ -77,7 +79,8 @@ struct record_head {
 	struct record_layer layers[LAYERS_MAX];
 	uint32_t section_count;
 	struct record_section sections[RECORD_SECTIONS_MAX];
-	uint32_t left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 and are not stored */
+	uint32_t left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 in all channels and are not stored */
+	uint32_t channels; /* bit c: channel c is wanted. All three when parsed; who loads one alone clears the others */
 };
 
 /* Bytes of a head, CRC included; a profile subtracts this from its budget before it spends the rest. */

@@ -181,6 +181,7 @@ bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_he
 	bp_status status;
 
 	memset(&head, 0, sizeof head);
+	head.channels = 7;
 	if (count < RECORD_PROBE_BYTES)
 		return error_set(error, BP_ERROR_CORRUPT, count, "the record ends after %zu bytes", count);
 	status = record_probe(bytes, &head.head_bytes, &head.record_bytes, error);

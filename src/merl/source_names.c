@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "name.h"
+#include "shown.h"
 
 /* Who has a name: where it was first seen, as a person would write it. */
 struct claim {
@@ -30,7 +31,7 @@ char *source_text_shown(const char *text)
 	const size_t room = 4 * strlen(text) + 8;
 	char *shown = malloc(room);
 	if (shown)
-		name_escape(text, shown, room);
+		shown_text(shown, room, text);
 	return shown;
 }
 

@@ -64,7 +64,8 @@ bp_status model_expand(const struct model *model, uint32_t layers, struct expans
 		layers = model->layer_count;
 	switch (model->profile) {
 	case PROFILE_PAPER:
-		return paper_expand(model->paper, model->colour, layers, out, error);
+		/* A model of which all layers are wanted shows what it holds, whichever layers that came in. */
+		return paper_expand(model->paper, model->colour, layers < model->layer_count ? layers : PAPER_LAYERS, out, error);
 	case PROFILE_SPECTRAL:
 		return spectral_expand(model->spectral, layers, out, error);
 	default:

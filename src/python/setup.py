@@ -8,16 +8,22 @@ from setuptools.command.build_ext import build_ext
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SRC = os.path.dirname(HERE)
-# What the Makefile leaves to the tool: sources that want libraries of their own.
-TOOL_ONLY = {"merl/source.c", "merl/source_kind.c", "merl/container.c", "merl/sha256.c", "merl/demo.c", "memory_stream.c"}
 WINGS = ("", "merl", "model", "model/*", "codec", "codec/*", "archive")
 FLAGS = ["-std=c17", "-O3", "-D_GNU_SOURCE", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden",
          "-ffunction-sections", "-fdata-sections"]
 
 
+def tool_only():
+    """What the Makefile leaves to the tool: sources that want libraries of their own."""
+    with open(os.path.join(os.path.dirname(SRC), "Makefile"), encoding="utf-8") as makefile:
+        text = re.search(r"^TOOL_ONLY *:= *((?:.*\\\n)*.*)", makefile.read(), re.M).group(1)
+    return {os.path.basename(name) for name in re.findall(r"[\w/]+\.c", text)}
+
+
 def library_sources():
+    left = tool_only()
     found = (path for wing in WINGS for path in glob.glob(os.path.join(SRC, wing, "*.c")))
-    return sorted(path for path in found if os.path.relpath(path, SRC) not in TOOL_ONLY)
+    return sorted(path for path in found if os.path.basename(path) not in left)
 
 
 def version():

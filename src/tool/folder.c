@@ -121,14 +121,13 @@ bool folder_write(const struct folder_set *set)
 		free(there);
 		return false;
 	}
-	uint64_t count = set->count;
-	for (uint64_t n = 0; n < count; n++) {
-		if (!set->name(set->user, n))
-			count = n + 1; /* the list breaks off: writing this one says why, once */
-		const int found = name_look(set, n);
-		there[n] = found > 0;
+	uint64_t count = 0; /* a walk ends where a name cannot be told: the index fails, whatever number it promised */
+	for (; count < set->count && set->name(set->user, count); count++) {
+		const int found = name_look(set, count);
+		there[count] = found > 0;
 		free_names &= found >= 0;
 	}
+	count += count < set->count;
 	for (uint64_t n = 0; n < count && free_names; n++)
 		whole &= there[n] || name_write(set, n);
 	free(there);

@@ -61,10 +61,10 @@ void report_text(const char *format, ...)
 }
 
 /* What to do about it, where that does not depend on the case. */
-static const char *status_remedy(bp_status status)
+static const char *status_remedy(const bp_error *error)
 {
-	switch (status) {
-	case BP_ERROR_UNSUPPORTED: return "a newer brdfpack reads it";
+	switch (error->status) {
+	case BP_ERROR_UNSUPPORTED: return strstr(error->message, "earlier version") ? NULL : "a newer brdfpack reads it";
 	case BP_ERROR_MEMORY: return report_workers ? "close other programs, or use fewer workers (-j)" : "close other programs";
 	default: return NULL;
 	}
@@ -81,7 +81,7 @@ void error_describe(const bp_error *error, char *text, size_t bytes)
 	if (strncmp(error->message, kind, strlen(kind)) == 0)
 		kind[0] = '\0'; /* the message says so itself */
 	const char *message = error->message[0] ? error->message : kind[0] ? "" : bp_status_text(error->status);
-	const char *remedy = status_remedy(error->status);
+	const char *remedy = status_remedy(error);
 	snprintf(text, bytes, "%s%s%s%s%s", kind, kind[0] && message[0] ? ": " : "", message, remedy ? "; " : "",
 	         remedy ? remedy : "");
 }

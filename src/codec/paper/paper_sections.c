@@ -1,7 +1,4 @@
-/*
- * The paper's model as sections (FORMAT.md, "Paper profile"): nothing is lost, unless the budget is
- * smaller than what the model takes; then the smallest levels of every field are left out.
- */
+/* paper_sections.c: the paper's model as sections (FORMAT.md, "Profile 1"): four of every channel. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,80 +6,85 @@
 #include "error.h"
 #include "model/paper/paper.h"
 #include "codec/profile_codec.h"
-#include "sparse_code.h"
+#include "paper_fields.h"
 
-enum { CODEC_RAW = 0, CODEC_SPARSE = 1 };
-enum { LEFT_OUT_HD = 1, LEFT_OUT_HPHI = 2, LEFT_OUT_SLICES = 4 };
+enum { CODEC_RAW = 0, CODEC_SPARSE_OLD = 1, CODEC_SPARSE = 2 };
+enum { LEFT_OUT_HD = 1, LEFT_OUT_HPHI = 2, LEFT_OUT_SLICES = 4, LEFT_OUT_ALL = 7 };
 
-static const struct section_kind KINDS[] = {
+#define CHANNEL_KINDS(c) \
+	{ SECTION_MARGINALS + (c) * SECTION_CHANNEL, CODEC_RAW, 2 }, { SECTION_PAIR_HD + (c) * SECTION_CHANNEL, CODEC_SPARSE, 1 }, \
+	{ SECTION_PAIR_HPHI + (c) * SECTION_CHANNEL, CODEC_SPARSE, 1 }, { SECTION_SLICES + (c) * SECTION_CHANNEL, CODEC_SPARSE, 1 }
+static const struct section_kind KINDS[] = { CHANNEL_KINDS(0), CHANNEL_KINDS(1), CHANNEL_KINDS(2) };
+/* Codec versions up to 3 had one achromatic density. */
+static const struct section_kind RETIRED[] = {
 	{ SECTION_MARGINALS, CODEC_RAW, 1 },
-	{ SECTION_PAIR_HD, CODEC_SPARSE, 1 },
-	{ SECTION_PAIR_HPHI, CODEC_SPARSE, 1 },
-	{ SECTION_SLICES, CODEC_SPARSE, 1 },
+	{ SECTION_PAIR_HD, CODEC_SPARSE_OLD, 1 },
+	{ SECTION_PAIR_HPHI, CODEC_SPARSE_OLD, 1 },
+	{ SECTION_SLICES, CODEC_SPARSE_OLD, 1 },
 };
 
-static uint32_t marginal_count(struct lattice_dims dims, int axis)
+/* The sections of a channel, in the order of their types. */
+static const struct {
+	uint16_t type, codec, version, layer;
+	enum paper_field field;
+	uint32_t left_out;
+} PARTS[] = {
+	{ SECTION_MARGINALS, CODEC_RAW, 2, PAPER_LAYER_MARGINALS, 0, 0 },
+	{ SECTION_PAIR_HD, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, PAPER_HD, LEFT_OUT_HD },
+	{ SECTION_PAIR_HPHI, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, PAPER_HPHI, LEFT_OUT_HPHI },
+	{ SECTION_SLICES, CODEC_SPARSE, 1, PAPER_LAYER_SLICES, PAPER_SLICE, LEFT_OUT_SLICES },
+};
+enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
+
+static const struct sparse_field *fields_of(const struct paper_channel *channel, enum paper_field kind, uint32_t *count)
 {
-	return axis == 0 ? dims.theta_h : axis == 1 ? dims.theta_d : dims.phi_d;
+	*count = kind == PAPER_SLICE ? channel->slice_count : 1;
+	return kind == PAPER_SLICE ? channel->slice : kind == PAPER_HD ? &channel->hd : &channel->hphi;
 }
 
 /* ---- encoding ---- */
 
-static void marginals_write(const struct model *model, struct section_list *sections)
+static bool any_there(const struct sparse_field *fields, uint32_t count)
 {
-	struct byte_buffer *out = section_add(sections, SECTION_MARGINALS, CODEC_RAW, 1, PAPER_LAYER_MARGINALS, SECTION_REQUIRED, NAN);
-	write_f64(out, model->paper->scale);
-	for (int axis = 0; axis < 3; axis++)
-		for (uint32_t i = 0; i < marginal_count(model->dims, axis); i++)
-			write_f32(out, model->paper->marginal[axis][i]);
-}
-
-static bp_status fields_write(const struct sparse_field *fields, uint32_t count, struct byte_buffer *out, bp_error *error)
-{
-	struct sparse_models *models = malloc(sizeof *models);
-	struct range_encoder encoder;
-	if (!models)
-		return error_memory(error, sizeof *models);
-	sparse_models_reset(models);
-	for (uint32_t i = 0; i < count; i++) {
-		write_u32(out, fields[i].count);
-		write_f32(out, fields[i].count ? fields[i].step : 0);
-	}
-	range_encoder_start(&encoder, out);
 	for (uint32_t i = 0; i < count; i++)
-		sparse_encode(&encoder, models, &fields[i]);
-	range_encoder_end(&encoder);
-	free(models);
-	return out->failed ? error_memory(error, out->count) : BP_OK;
+		if (fields[i].count)
+			return true;
+	return false;
 }
 
-static bp_status model_write(const struct model *model, struct section_list *sections, uint32_t *layer_count,
+static struct byte_buffer *part_add(struct section_list *sections, int part, int c)
+{
+	return section_add(sections, (enum section_type)(PARTS[part].type + c * SECTION_CHANNEL), PARTS[part].codec, PARTS[part].version,
+	                   PARTS[part].layer, SECTION_REQUIRED | (uint32_t)SECTION_ONLY_R << c, NAN);
+}
+
+/* All sections of the model, coarser by `shift` (sparse_coarsen); sections come in the order of their layers. */
+static bp_status model_write(const struct paper_model *paper, uint32_t shift, struct section_list *sections, uint32_t *layer_count,
                              uint32_t *left_out, bp_error *error)
 {
-	const struct paper_model *paper = model->paper;
 	bp_status status = BP_OK;
-	uint32_t slices_kept = 0, omitted = 0;
 
-	for (uint32_t i = 0; i < paper->slice_count; i++)
-		slices_kept += paper->slice[i].count > 0;
-	marginals_write(model, sections);
-	if (paper->hd.count)
-		status = fields_write(&paper->hd, 1, section_add(sections, SECTION_PAIR_HD, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, SECTION_REQUIRED, NAN), error);
-	else
-		omitted |= LEFT_OUT_HD;
-	if (!status && paper->hphi.count)
-		status = fields_write(&paper->hphi, 1, section_add(sections, SECTION_PAIR_HPHI, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, SECTION_REQUIRED, NAN), error);
-	else if (!paper->hphi.count)
-		omitted |= LEFT_OUT_HPHI;
-	if (!status && slices_kept) {
-		struct byte_buffer *out = section_add(sections, SECTION_SLICES, CODEC_SPARSE, 1, PAPER_LAYER_SLICES, SECTION_REQUIRED, NAN);
-		write_u32(out, paper->slice_count);
-		status = fields_write(paper->slice, paper->slice_count, out, error);
-	} else if (!slices_kept) {
-		omitted |= LEFT_OUT_SLICES;
-	}
-	*layer_count = slices_kept ? PAPER_LAYERS : paper->hd.count || paper->hphi.count ? PAPER_LAYER_PAIRS + 1 : 1;
-	*left_out = omitted;
+	*layer_count = 1;
+	*left_out = LEFT_OUT_ALL;
+	for (int part = 0; !status && part < PART_COUNT; part++)
+		for (int c = 0; !status && c < 3; c++) {
+			const struct paper_channel *channel = &paper->channel[c];
+			struct sparse_field *coarse = NULL;
+			uint32_t count;
+
+			if (part == 0) {
+				marginals_write(paper->dims, channel, part_add(sections, part, c));
+				continue;
+			}
+			const struct sparse_field *fields = fields_of(channel, PARTS[part].field, &count);
+			status = fields_coarsen(PARTS[part].field, fields, count, shift, &coarse, error);
+			if (!status && any_there(coarse, count)) {
+				status = fields_write(paper->dims, PARTS[part].field, coarse, count, part_add(sections, part, c), error);
+				*layer_count = PARTS[part].layer + 1u;
+				*left_out &= ~PARTS[part].left_out;
+			}
+			fields_free(coarse, count);
+		}
 	return status;
 }
 
@@ -94,259 +96,92 @@ static uint64_t record_bytes(const struct section_list *sections, uint32_t layer
 	return bytes;
 }
 
-/* ---- fitting a budget ---- */
+/* What was tried: the coarsest that did not fit, and the finest that did. */
+struct bracket {
+	uint32_t above, below;       /* shifts, in units of SHIFT_GRAIN */
+	uint64_t above_bytes, below_bytes;
+};
 
-enum { KEEP_ALL = 1024 };
+enum { SHIFT_GRAIN = 16, SHIFT_MOST = SPARSE_SHIFT_MAX / SHIFT_GRAIN };
 
-static int magnitude_descending(const void *a, const void *b)
+/* Where bytes would meet the budget if they fell evenly in between; a little coarser, so that the bracket closes from both sides. */
+static uint32_t bracket_next(const struct bracket *b, uint64_t budget)
 {
-	int x = abs(*(const int16_t *)a), y = abs(*(const int16_t *)b);
-	return (x < y) - (x > y);
-}
-
-/* The largest keep/KEEP_ALL of a field's coefficients, by magnitude, ties by place. */
-static bp_status field_thin(const struct sparse_field *from, uint32_t keep, struct sparse_field *to, bp_error *error)
-{
-	uint32_t wanted = (uint32_t)((uint64_t)from->count * keep / KEEP_ALL), above = 0;
-	int16_t *sorted;
-	int threshold;
-	*to = *from;
-	to->count = 0;
-	to->index = NULL;
-	to->level = NULL;
-	if (wanted == 0)
-		return BP_OK;
-	sorted = malloc(from->count * sizeof *sorted);
-	to->index = malloc(wanted * sizeof *to->index);
-	to->level = malloc(wanted * sizeof *to->level);
-	if (!sorted || !to->index || !to->level) {
-		free(sorted);
-		return error_memory(error, from->count * sizeof *sorted);
-	}
-	memcpy(sorted, from->level, from->count * sizeof *sorted);
-	qsort(sorted, from->count, sizeof *sorted, magnitude_descending);
-	threshold = abs(sorted[wanted - 1]);
-	for (uint32_t i = 0; i < wanted && abs(sorted[i]) > threshold; i++)
-		above++;
-	free(sorted);
-	for (uint32_t i = 0, ties = wanted - above; i < from->count; i++) {
-		int magnitude = abs(from->level[i]);
-		if (magnitude < threshold || (magnitude == threshold && ties == 0))
-			continue;
-		ties -= magnitude == threshold;
-		to->index[to->count] = from->index[i];
-		to->level[to->count++] = from->level[i];
-	}
-	return BP_OK;
-}
-
-static void field_free(struct sparse_field *field)
-{
-	free(field->index);
-	free(field->level);
-}
-
-/* Encodes keep/KEEP_ALL of every field; *bytes is what the whole record would take. */
-static bp_status thinned_write(const struct model *model, const struct encode_request *request, uint32_t keep,
-                               struct section_list *sections, uint32_t *layer_count, uint32_t *left_out, uint64_t *bytes,
-                               bp_error *error)
-{
-	struct paper_model thin = *model->paper;
-	struct model shell = *model;
-	bp_status status;
-	shell.paper = &thin;
-	memset(&thin.hd, 0, sizeof thin.hd);
-	memset(&thin.hphi, 0, sizeof thin.hphi);
-	thin.slice = calloc(thin.slice_count ? thin.slice_count : 1, sizeof *thin.slice);
-	if (!thin.slice)
-		return error_memory(error, thin.slice_count * sizeof *thin.slice);
-	status = field_thin(&model->paper->hd, keep, &thin.hd, error);
-	if (!status)
-		status = field_thin(&model->paper->hphi, keep, &thin.hphi, error);
-	for (uint32_t i = 0; !status && i < thin.slice_count; i++)
-		status = field_thin(&model->paper->slice[i], keep, &thin.slice[i], error);
-	if (!status)
-		status = model_write(&shell, sections, layer_count, left_out, error);
-	if (!status)
-		*bytes = record_bytes(sections, *layer_count, request->name_bytes);
-	field_free(&thin.hd);
-	field_free(&thin.hphi);
-	for (uint32_t i = 0; i < thin.slice_count; i++)
-		field_free(&thin.slice[i]);
-	free(thin.slice);
-	return status;
+	const double share = (double)(b->above_bytes - budget) / (double)(b->above_bytes - b->below_bytes);
+	const uint32_t next = b->above + (uint32_t)((b->below - b->above) * share) + 1;
+	return next > b->above && next < b->below ? next : (b->above + b->below) / 2;
 }
 
 static bp_status paper_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
                               uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
+	const uint64_t budget = request->record_bytes_max;
+	struct bracket bracket = { .above = 0, .below = SHIFT_MOST };
+	uint32_t last = 0;
 	(void)decoded;
-	uint64_t bytes;
-	uint32_t low = 0, high = KEEP_ALL; /* low fits, high does not */
-	bp_status status = model_write(model, sections, layer_count, left_out, error);
-	if (status || record_bytes(sections, *layer_count, request->name_bytes) <= request->record_bytes_max)
+
+	bp_status status = model_write(model->paper, 0, sections, layer_count, left_out, error);
+	bracket.above_bytes = record_bytes(sections, *layer_count, request->name_bytes);
+	if (status || bracket.above_bytes <= budget)
 		return status;
 	section_list_free(sections);
-	status = thinned_write(model, request, 0, sections, layer_count, left_out, &bytes, error);
-	if (!status && bytes > request->record_bytes_max)
+	status = model_write(model->paper, SHIFT_MOST * SHIFT_GRAIN, sections, layer_count, left_out, error);
+	bracket.below_bytes = record_bytes(sections, *layer_count, request->name_bytes);
+	if (!status && bracket.below_bytes > budget)
 		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the budget of %u bytes is too small: this record takes at least %llu",
-		                 request->record_bytes_max, (unsigned long long)bytes);
-	while (!status && high - low > 1) {
-		uint32_t middle = (low + high) / 2;
+		                 request->record_bytes_max, (unsigned long long)bracket.below_bytes);
+	last = SHIFT_MOST;
+	while (!status && bracket.below - bracket.above > 1) {
 		section_list_free(sections);
-		status = thinned_write(model, request, middle, sections, layer_count, left_out, &bytes, error);
-		if (bytes <= request->record_bytes_max)
-			low = middle;
-		else
-			high = middle;
+		last = bracket_next(&bracket, budget);
+		status = model_write(model->paper, last * SHIFT_GRAIN, sections, layer_count, left_out, error);
+		const uint64_t bytes = record_bytes(sections, *layer_count, request->name_bytes);
+		if (bytes <= budget) {
+			bracket.below = last;
+			bracket.below_bytes = bytes;
+			if (bytes >= budget - budget / 500)
+				return status; /* what is left would not buy another grain worth its time */
+		} else {
+			bracket.above = last;
+			bracket.above_bytes = bytes;
+		}
 	}
+	if (status || last == bracket.below)
+		return status;
 	section_list_free(sections);
-	return status ? status : thinned_write(model, request, low, sections, layer_count, left_out, &bytes, error);
+	return model_write(model->paper, bracket.below * SHIFT_GRAIN, sections, layer_count, left_out, error);
 }
 
 /* ---- decoding ---- */
 
-static bp_status marginals_read(const struct section_bytes *section, struct model *model, bp_error *error)
-{
-	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
-	struct paper_model *paper = model->paper;
-	paper->scale = read_f64(&in);
-	if (!(paper->scale >= 0) || !isfinite(paper->scale))
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the scale is %g", paper->scale);
-	for (int c = 0; c < 3; c++)
-		if (!isfinite(model->colour[c].specular * paper->scale))
-			return error_set(error, BP_ERROR_CORRUPT, 0, "channel %d: the scale %g and the specular parameter %g overflow", c,
-			                 paper->scale, model->colour[c].specular);
-	for (int axis = 0; axis < 3; axis++) {
-		uint32_t count = marginal_count(model->dims, axis);
-		paper->marginal[axis] = malloc(count * sizeof(float));
-		if (!paper->marginal[axis])
-			return error_memory(error, count * sizeof(float));
-		for (uint32_t i = 0; i < count; i++) {
-			float value = read_f32(&in);
-			if (!(value >= 0) || !isfinite(value))
-				return error_set(error, BP_ERROR_CORRUPT, in.at - 4, "marginal %d has the value %g at cell %u", axis,
-				                 (double)value, i);
-			paper->marginal[axis][i] = value;
-		}
-	}
-	if (in.failed || byte_reader_left(&in))
-		return error_set(error, BP_ERROR_CORRUPT, 0, "marginals of %ux%ux%u cells do not take %u bytes", model->dims.theta_h,
-		                 model->dims.theta_d, model->dims.phi_d, section->entry->bytes);
-	return BP_OK;
-}
-
-/*
- * Reads `count` fields of rows x columns cells, which are zeroed. Every coefficient takes at least the bit of
- * its sign, so the bytes that are there bound what is allocated.
- */
-static bp_status fields_read(struct byte_reader *in, uint32_t rows, uint32_t columns, struct sparse_field *fields,
-                             uint32_t count, bp_error *error)
-{
-	uint32_t cells = paper_plane_cells(rows, columns);
-	uint64_t total = 0;
-	struct sparse_models *models = NULL;
-	struct range_decoder decoder;
-	bp_status status = BP_OK;
-
-	for (uint32_t i = 0; i < count; i++) {
-		uint32_t kept = read_u32(in);
-		float step = read_f32(in);
-		fields[i].rows = rows;
-		fields[i].columns = columns;
-		fields[i].step = step;
-		total += kept;
-		if (in->failed || kept > cells || !(kept ? step > 0 && isfinite(step) : step == 0))
-			return error_set(error, BP_ERROR_CORRUPT, in->at, "field %u: %u coefficients of step %g", i, kept, (double)step);
-		fields[i].count = kept;
-	}
-	if (total > 8 * (uint64_t)byte_reader_left(in))
-		return error_set(error, BP_ERROR_CORRUPT, in->at, "%llu coefficients cannot be in %zu bytes", (unsigned long long)total,
-		                 byte_reader_left(in));
-	models = malloc(sizeof *models);
-	if (!models)
-		return error_memory(error, sizeof *models);
-	sparse_models_reset(models);
-	range_decoder_start(&decoder, in->bytes + in->at, byte_reader_left(in));
-	for (uint32_t i = 0; !status && i < count; i++) {
-		struct sparse_field *field = &fields[i];
-		if (field->count == 0)
-			continue;
-		field->index = malloc(field->count * sizeof *field->index);
-		field->level = malloc(field->count * sizeof *field->level);
-		if (!field->index || !field->level)
-			status = error_memory(error, field->count * sizeof *field->index);
-		else
-			status = sparse_decode(&decoder, models, cells, field, error);
-	}
-	if (!status && !range_decoder_ended(&decoder))
-		status = error_set(error, BP_ERROR_CORRUPT, in->at, "the coefficients take %zu bytes, %zu are there", decoder.at,
-		                   decoder.count);
-	free(models);
-	return status;
-}
-
-static bp_status pair_read(const struct section_bytes *section, uint32_t rows, uint32_t columns, struct sparse_field *field,
-                           bp_error *error)
-{
-	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
-	return fields_read(&in, rows, columns, field, 1, error);
-}
-
-static bp_status slices_read(const struct section_bytes *section, struct model *model, bp_error *error)
-{
-	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
-	struct paper_model *paper = model->paper;
-	uint32_t count = read_u32(&in);
-	struct sparse_field *slices;
-	if (count < 1 || count > model->dims.theta_h)
-		return error_set(error, BP_ERROR_CORRUPT, 0, "%u slices; 1 to %u are possible", count, model->dims.theta_h);
-	slices = calloc(count, sizeof *slices);
-	if (!slices)
-		return error_memory(error, count * sizeof *slices);
-	free(paper->slice);
-	paper->slice = slices;
-	paper->slice_count = count;
-	return fields_read(&in, model->dims.theta_d, model->dims.phi_d, slices, count, error);
-}
-
 static bp_status section_read(const struct section_bytes *section, struct model *model, bp_error *error)
 {
-	struct lattice_dims dims = model->dims;
-	switch (section->entry->type) {
-	case SECTION_MARGINALS: return marginals_read(section, model, error);
-	case SECTION_PAIR_HD: return pair_read(section, dims.theta_h, dims.theta_d, &model->paper->hd, error);
-	case SECTION_PAIR_HPHI: return pair_read(section, dims.theta_h, dims.phi_d, &model->paper->hphi, error);
-	case SECTION_SLICES: return slices_read(section, model, error);
-	}
-	return BP_OK;
-}
+	const uint32_t type = section->entry->type - 1u, c = type / SECTION_CHANNEL, part = type % SECTION_CHANNEL;
+	struct paper_channel *channel = &model->paper->channel[c];
+	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
 
-/* Where slices are left out, or in a layer that was not asked for, one that is 1 stands for all. */
-static bp_status paper_start(struct model *model, bp_error *error)
-{
-	struct lattice_dims dims = model->dims;
-	struct paper_model *paper = calloc(1, sizeof *paper);
-	if (!paper)
-		return error_memory(error, sizeof *paper);
-	model->paper = paper;
-	paper->dims = dims;
-	paper->hd = (struct sparse_field){ .rows = dims.theta_h, .columns = dims.theta_d };
-	paper->hphi = (struct sparse_field){ .rows = dims.theta_h, .columns = dims.phi_d };
-	paper->slice = calloc(1, sizeof *paper->slice);
-	if (!paper->slice)
-		return error_memory(error, sizeof *paper->slice);
-	paper->slice[0] = (struct sparse_field){ .rows = dims.theta_d, .columns = dims.phi_d };
-	paper->slice_count = 1;
-	return BP_OK;
+	if (part == 0)
+		return marginals_read(&in, model->dims, model->colour[c].specular, channel, error);
+	const enum paper_field kind = PARTS[part].field;
+	if (kind != PAPER_SLICE)
+		return fields_read(&in, model->dims, kind, kind == PAPER_HD ? &channel->hd : &channel->hphi, 1, error);
+	channel->slice_count = paper_shared_from(model->dims.theta_h) + 1;
+	channel->slice = calloc(channel->slice_count, sizeof *channel->slice);
+	if (!channel->slice)
+		return error_memory(error, channel->slice_count * sizeof *channel->slice);
+	return fields_read(&in, model->dims, kind, channel->slice, channel->slice_count, error);
 }
 
 static bp_status paper_decode(const struct record_head *head, const struct section_bytes *sections, uint32_t count,
                               struct model *model, uint32_t *failed, bp_error *error)
 {
 	uint32_t seen = 0;
-	bp_status status = paper_start(model, error);
-	(void)head;
+	bp_status status = BP_OK;
+
+	model->paper = calloc(1, sizeof *model->paper);
+	if (!model->paper)
+		return error_memory(error, sizeof *model->paper);
+	model->paper->dims = model->dims;
 	for (uint32_t i = 0; !status && i < count; i++) {
 		uint32_t bit = 1u << sections[i].entry->type;
 		*failed = i;
@@ -358,13 +193,16 @@ static bp_status paper_decode(const struct record_head *head, const struct secti
 	if (status)
 		return status;
 	*failed = UINT32_MAX;
-	if (!(seen & 1u << SECTION_MARGINALS))
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the section of the marginals is missing");
+	for (int c = 0; c < 3; c++)
+		if (head->channels >> c & 1 && !(seen >> (SECTION_MARGINALS + c * SECTION_CHANNEL) & 1))
+			return error_set(error, BP_ERROR_CORRUPT, 0, "the section of the marginals of channel %d is missing", c);
 	return BP_OK;
 }
 
 const struct profile_codec PAPER_CODEC = {
-	.profile = PROFILE_PAPER, .version = 3, .kinds = KINDS, .kind_count = sizeof KINDS / sizeof *KINDS,
+	.profile = PROFILE_PAPER, .version = 4,
+	.kinds = KINDS, .kind_count = sizeof KINDS / sizeof *KINDS,
+	.retired = RETIRED, .retired_count = sizeof RETIRED / sizeof *RETIRED,
 	.decode = paper_decode,
 };
 

@@ -1,52 +1,108 @@
 #include "sparse_code.h"
 
+#include <stdlib.h>
+
 #include "error.h"
 
-void sparse_models_reset(struct sparse_models *models)
+bp_status sparse_coder_create(struct lattice_dims dims, enum paper_field kind, struct sparse_coder **out, bp_error *error)
 {
-	bit_models_reset((struct bit_model *)models, sizeof *models / sizeof(struct bit_model));
+	struct sparse_coder *coder = calloc(1, sizeof *coder);
+	uint32_t cells = paper_plane_cells(dims, kind);
+
+	if (!coder)
+		return error_memory(error, sizeof *coder);
+	coder->cells = cells;
+	coder->band = malloc(cells);
+	coder->before = calloc(cells, 1);
+	coder->marks = malloc(cells * sizeof *coder->marks);
+	if (!coder->band || !coder->before || !coder->marks) {
+		sparse_coder_free(coder);
+		return error_memory(error, cells * (2 + sizeof *coder->marks));
+	}
+	paper_plane_bands(dims, kind, coder->band);
+	for (uint32_t i = 0; i < cells; i++)
+		coder->band[i] = coder->band[i] < SPARSE_BANDS ? coder->band[i] : SPARSE_BANDS - 1;
+	bit_models_reset((struct bit_model *)&coder->models, sizeof coder->models / sizeof(struct bit_model));
+	*out = coder;
+	return BP_OK;
+}
+
+void sparse_coder_free(struct sparse_coder *coder)
+{
+	if (!coder)
+		return;
+	free(coder->band);
+	free(coder->before);
+	free(coder->marks);
+	free(coder);
 }
 
 /* Large follows large: the context is the size class of the number before. */
 static uint32_t context_of(uint32_t before)
 {
 	uint32_t length = gamma_length(before);
-	return length < SPARSE_CONTEXTS ? length : SPARSE_CONTEXTS - 1;
+	return length < SPARSE_GAPS ? length : SPARSE_GAPS - 1;
 }
 
-void sparse_encode(struct range_encoder *encoder, struct sparse_models *models, const struct sparse_field *field)
+/* The field just coded becomes what the next one is expected to resemble. */
+static void field_remember(struct sparse_coder *coder, const struct sparse_field *field)
 {
-	uint32_t next = 0, gap_before = 0, magnitude_before = 0;
+	for (uint32_t i = 0; i < coder->mark_count; i++)
+		coder->before[coder->marks[i]] = 0;
 	for (uint32_t i = 0; i < field->count; i++) {
-		int level = field->level[i];
-		uint32_t gap = field->index[i] - next, magnitude = (uint32_t)(level < 0 ? -level : level) - 1;
+		const int32_t magnitude = field->level[i] < 0 ? -field->level[i] : field->level[i];
+		coder->before[field->index[i]] = (uint8_t)(magnitude < SPARSE_BEFORE ? magnitude : SPARSE_BEFORE - 1);
+		coder->marks[i] = field->index[i];
+	}
+	coder->mark_count = field->count;
+}
+
+void sparse_encode(struct range_encoder *encoder, struct sparse_coder *coder, const struct sparse_field *field)
+{
+	struct sparse_models *models = &coder->models;
+	uint32_t next = 0, gap_before = 0;
+
+	gamma_encode(encoder, &models->count, field->count - 1);
+	for (uint32_t i = 0; i < field->count; i++) {
+		const uint32_t at = field->index[i], gap = at - next;
+		const int32_t level = field->level[i];
+
 		gamma_encode(encoder, &models->gap[context_of(gap_before)], gap);
-		gamma_encode(encoder, &models->magnitude[context_of(magnitude_before)], magnitude);
+		gamma_encode(encoder, &models->magnitude[coder->band[at]][coder->before[at]], (uint32_t)(level < 0 ? -level : level) - 1);
 		range_encode_even(encoder, level < 0, 1);
-		next = field->index[i] + 1;
+		next = at + 1;
 		gap_before = gap;
-		magnitude_before = magnitude;
 	}
+	field_remember(coder, field);
 }
 
-bp_status sparse_decode(struct range_decoder *decoder, struct sparse_models *models, uint32_t plane_cells,
-                        struct sparse_field *field, bp_error *error)
+bp_status sparse_decode(struct range_decoder *decoder, struct sparse_coder *coder, size_t most, struct sparse_field *field, bp_error *error)
 {
-	uint32_t next = 0, gap_before = 0, magnitude_before = 0;
-	for (uint32_t i = 0; i < field->count; i++) {
-		uint32_t gap = gamma_decode(decoder, &models->gap[context_of(gap_before)]);
-		uint32_t magnitude = gamma_decode(decoder, &models->magnitude[context_of(magnitude_before)]);
-		uint32_t negative = range_decode_even(decoder, 1);
-		if (gap >= plane_cells - next)
-			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u lies outside its plane of %u", i, plane_cells);
-		if (magnitude > INT16_MAX - 1)
-			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u has a level of %u, at most %d are possible", i,
-			                 magnitude + 1, INT16_MAX);
-		field->index[i] = next + gap;
-		field->level[i] = (int16_t)(negative ? -(int)magnitude - 1 : (int)magnitude + 1);
-		next = field->index[i] + 1;
-		gap_before = gap;
-		magnitude_before = magnitude;
+	struct sparse_models *models = &coder->models;
+	const uint32_t count = gamma_decode(decoder, &models->count) + 1;
+	uint32_t next = 0, gap = 0;
+
+	if (count > coder->cells || count > most)
+		return error_set(error, BP_ERROR_CORRUPT, decoder->at, "a field of %u coefficients: its plane has %u, and %zu can be in these bytes", count,
+		                 coder->cells, most);
+	field->index = malloc(count * sizeof *field->index);
+	field->level = malloc(count * sizeof *field->level);
+	if (!field->index || !field->level)
+		return error_memory(error, count * (sizeof *field->index + sizeof *field->level));
+	for (uint32_t i = 0; i < count; i++) {
+		gap = gamma_decode(decoder, &models->gap[context_of(gap)]);
+		if (gap >= coder->cells - next)
+			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u lies outside its plane of %u", i, coder->cells);
+		const uint32_t at = next + gap, magnitude = gamma_decode(decoder, &models->magnitude[coder->band[at]][coder->before[at]]);
+		const uint32_t negative = range_decode_even(decoder, 1);
+		if (magnitude >= PAPER_LEVEL_MAX)
+			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u has a level of %u, at most %d are possible", i, magnitude + 1,
+			                 PAPER_LEVEL_MAX);
+		field->index[i] = at;
+		field->level[i] = negative ? -(int32_t)magnitude - 1 : (int32_t)magnitude + 1;
+		next = at + 1;
 	}
+	field->count = count;
+	field_remember(coder, field);
 	return BP_OK;
 }

@@ -17,10 +17,15 @@ typedef double lanes4_unaligned __attribute__((vector_size(32), aligned(8), may_
 typedef float floats4 __attribute__((vector_size(16)));
 typedef float floats4_unaligned __attribute__((vector_size(16), aligned(4), may_alias));
 
+typedef float floats8 __attribute__((vector_size(32)));
+typedef float floats8_unaligned __attribute__((vector_size(32), aligned(4), may_alias));
+
 /* Four doubles at p, which need not be aligned. */
 #define LANES_LOAD(p) ((lanes4)(*(const lanes4_unaligned *)(p)))
 #define LANES_STORE(p, v) (*(lanes4_unaligned *)(p) = (v))
 #define FLOATS_LOAD(p) ((floats4)(*(const floats4_unaligned *)(p)))
+#define FLOATS8_LOAD(p) ((floats8)(*(const floats8_unaligned *)(p)))
+#define FLOATS8_STORE(p, v) (*(floats8_unaligned *)(p) = (v))
 /* The mask is all ones where it is true. */
 #define LANES_SELECT(mask, yes, no) ((lanes4)(((mask4)(yes) & (mask)) | ((mask4)(no) & ~(mask))))
 #define LANES_ALL(x) ((lanes4){(x), (x), (x), (x)})

@@ -2,148 +2,177 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
-#include "paper_kernels.h"
+#include "model/math/fast_math.h"
+#include "paper.h"
 
-static bp_status means_alloc(struct means *means, size_t n, bp_error *error)
+static const float DARK = 3e-4f; /* of a pixel's usual brightness: nobody sees how much darker */
+static const double RANGE = 4.32; /* log2 20 */
+static const double SHARED_WEIGHT = 0.1;
+enum { ROUNDS = 8, TURNS = 3 }; /* of h and d by turns; of these and phi */
+
+bp_status marginals_alloc(struct lattice_dims d, struct marginals *out, bp_error *error)
 {
-	means->value = calloc(n, sizeof *means->value);
-	means->valid = calloc(n, sizeof *means->valid);
-	means->count = calloc(n, sizeof *means->count);
-	return means->value && means->valid && means->count ? BP_OK : error_memory(error, n * sizeof *means->value);
+	const size_t pairs = (size_t)d.theta_h * d.theta_d;
+
+	*out = (struct marginals){.h = malloc(d.theta_h * sizeof(float)),
+	                          .d = malloc(d.theta_d * sizeof(float)),
+	                          .phi = malloc(d.phi_d * sizeof(float)),
+	                          .rest = malloc(pairs * sizeof(float)),
+	                          .measured = malloc(pairs * sizeof(float))};
+	if (out->h && out->d && out->phi && out->rest && out->measured)
+		return BP_OK;
+	marginals_free(out);
+	return error_memory(error, 2 * pairs * sizeof(float));
 }
 
-static void means_free(struct means *means)
+void marginals_free(struct marginals *m)
 {
-	free(means->value);
-	free(means->valid);
-	free(means->count);
+	free(m->h);
+	free(m->d);
+	free(m->phi);
+	free(m->rest);
+	free(m->measured);
+	*m = (struct marginals){.h = NULL};
 }
 
-void density_free(struct density *density)
+/* Sums of the logarithms and of their weights: of every pair (theta_h, theta_d) and of every phi_d. */
+struct log_sums {
+	double *pair, *pair_weight, *phi, *phi_weight; /* one block, at pair */
+};
+
+static double clamped(double x, double range)
 {
-	free(density->value);
-	for (int axis = 0; axis < 3; axis++)
-		means_free(&density->axis[axis]);
-	means_free(&density->hd);
-	means_free(&density->hphi);
-	memset(density, 0, sizeof *density);
+	return x > range ? range : x < -range ? -range : x;
 }
 
-/* Sums of factor (r + g + b) into all means, in a fixed order: rows, then slices. Returns the sum over the lattice. */
-static double sums_gather(const struct lattice *lattice, double factor, struct density *out)
+static void sums_gather(struct lattice_dims d, const float *value, const float *shown, struct log_sums *sums)
 {
-	const struct paper_kernels *kernels = paper_kernels_get();
-	const struct lattice_dims d = lattice->dims;
-	double total = 0;
+	float logs[LATTICE_EXTENT_MAX];
 
-	for (uint32_t i = 0; i < d.theta_h; i++) {
-		double *slice_column = out->hphi.value + (size_t)i * d.phi_d, slice = 0;
-		uint32_t *slice_count = out->hphi.count + (size_t)i * d.phi_d, slice_cells = 0;
+	for (uint32_t row = 0; row < d.theta_h * d.theta_d; row++) {
+		const float *x = value + (size_t)row * d.phi_d, *s = shown + (size_t)row * d.phi_d;
+		const double shared = row / d.theta_d < paper_shared_from(d.theta_h) ? 1 : SHARED_WEIGHT;
+		double sum = 0, weight = 0;
 
-		for (uint32_t j = 0; j < d.theta_d; j++) {
-			const size_t at = lattice_index(d, i, j, 0), pair = (size_t)i * d.theta_d + j;
-			const double *const rgb[3] = {lattice->rgb[0] + at, lattice->rgb[1] + at, lattice->rgb[2] + at};
-			uint32_t count;
-			double sum = kernels->density_row(rgb, lattice->valid + at, d.phi_d, factor, out->value + at, slice_column,
-			                                  slice_count, &count);
-			out->hd.value[pair] = sum;
-			out->hd.count[pair] = count;
-			out->axis[1].value[j] += sum;
-			out->axis[1].count[j] += count;
-			slice += sum;
-			slice_cells += count;
-		}
+		for (uint32_t k = 0; k < d.phi_d; k++)
+			logs[k] = s[k] * fast_log2f(x[k] > DARK ? x[k] : DARK);
 		for (uint32_t k = 0; k < d.phi_d; k++) {
-			out->axis[2].value[k] += slice_column[k];
-			out->axis[2].count[k] += slice_count[k];
+			sum += (double)logs[k];
+			weight += (double)s[k];
+			sums->phi[k] += shared * (double)logs[k];
+			sums->phi_weight[k] += shared * (double)s[k];
 		}
-		out->axis[0].value[i] = slice;
-		out->axis[0].count[i] = slice_cells;
-		total += slice;
-	}
-	return total;
-}
-
-static double largest_value(const struct lattice *lattice)
-{
-	double largest = 0;
-
-	for (int c = 0; c < 3; c++)
-		for (size_t i = 0; i < lattice_cells(lattice->dims); i++)
-			if (lattice->valid[i] && lattice->rgb[c][i] > largest)
-				largest = lattice->rgb[c][i];
-	return largest;
-}
-
-static void sums_clear(struct density *out)
-{
-	const struct lattice_dims d = out->dims;
-	const uint32_t extents[3] = {d.theta_h, d.theta_d, d.phi_d};
-
-	for (int axis = 0; axis < 3; axis++) {
-		memset(out->axis[axis].value, 0, extents[axis] * sizeof(double));
-		memset(out->axis[axis].count, 0, extents[axis] * sizeof(uint32_t));
-	}
-	memset(out->hphi.value, 0, (size_t)d.theta_h * d.phi_d * sizeof(double));
-	memset(out->hphi.count, 0, (size_t)d.theta_h * d.phi_d * sizeof(uint32_t));
-}
-
-/*
- * The mean being 1. Where a whole row is as dark as that, its copulas are ratios of next to nothing: digits that the same table in
- * another unit has lost, or 0 / 0 where it says 0.
- */
-static double dark_removed(double v)
-{
-	return v < DENSITY_DARK ? 0 : v;
-}
-
-static void means_finish(struct means *means, size_t n, double factor)
-{
-	for (size_t i = 0; i < n; i++) {
-		means->valid[i] = means->count[i] != 0;
-		means->value[i] = means->count[i] ? dark_removed(means->value[i] * factor / means->count[i]) : 0;
+		sums->pair[row] = shared * sum;
+		sums->pair_weight[row] = shared * weight;
 	}
 }
 
-bp_status density_build(const struct lattice *lattice, struct density *out, bp_error *error)
+/* What the others leave for one index, or the value before it where nothing was measured. */
+static double mean_or(double sum, double weight, double otherwise)
 {
-	const struct lattice_dims d = lattice->dims;
-	const size_t cells = lattice_cells(d), nd = d.theta_d, np = d.phi_d, nh = d.theta_h;
-	int exponent = 0; /* the sums are of 2^exponent (r + g + b) */
+	return weight > 0 ? sum / weight : otherwise;
+}
 
-	*out = (struct density){.dims = d, .valid = lattice->valid};
-	if (!lattice->valid_count)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell");
-	out->value = malloc(cells * sizeof *out->value);
-	bp_status status = out->value ? BP_OK : error_memory(error, cells * sizeof *out->value);
-	status = status ? status : means_alloc(&out->axis[0], nh, error);
-	status = status ? status : means_alloc(&out->axis[1], nd, error);
-	status = status ? status : means_alloc(&out->axis[2], np, error);
-	status = status ? status : means_alloc(&out->hd, nh * nd, error);
-	status = status ? status : means_alloc(&out->hphi, nh * np, error);
-	if (status) {
-		density_free(out);
-		return status;
+static void pairs_fit_sums(struct lattice_dims d, const struct log_sums *sums, double *h, double *j_mean)
+{
+	for (int round = 0; round < ROUNDS; round++) {
+		for (uint32_t i = 0; i < d.theta_h; i++) {
+			double sum = 0, weight = 0;
+			for (uint32_t j = 0; j < d.theta_d; j++) {
+				const double w = sums->pair_weight[i * d.theta_d + j];
+				sum += sums->pair[i * d.theta_d + j] - w * j_mean[j];
+				weight += w;
+			}
+			h[i] = mean_or(sum, weight, i ? h[i - 1] : 0);
+		}
+		for (uint32_t j = 0; j < d.theta_d; j++) {
+			double sum = 0, weight = 0;
+			for (uint32_t i = 0; i < d.theta_h; i++) {
+				const double w = sums->pair_weight[i * d.theta_d + j];
+				sum += sums->pair[i * d.theta_d + j] - w * h[i];
+				weight += w;
+			}
+			j_mean[j] = clamped(mean_or(sum, weight, j ? j_mean[j - 1] : 0), RANGE);
+		}
 	}
-	double total = sums_gather(lattice, 1, out);
-	if (total != 0 && !(total > 1e-250 && total < 1e300)) { /* seldom: near the ends of double's range */
-		frexp(largest_value(lattice), &exponent);
-		exponent = exponent < -1000 ? 1000 : -exponent;
-		sums_clear(out);
-		total = sums_gather(lattice, ldexp(1, exponent), out);
+}
+
+/* phi from what h and d leave. */
+static void phi_fit(struct lattice_dims d, const float *shown, const struct log_sums *sums, const double *h, const double *j_mean, double *phi)
+{
+	double explained[LATTICE_EXTENT_MAX] = {0};
+
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		for (uint32_t j = 0; j < d.theta_d; j++) {
+			const float *s = shown + lattice_index(d, i, j, 0);
+			const double of_row = (i < paper_shared_from(d.theta_h) ? 1 : SHARED_WEIGHT) * (h[i] + j_mean[j]);
+			for (uint32_t k = 0; k < d.phi_d; k++)
+				explained[k] += of_row * (double)s[k];
+		}
+	for (uint32_t k = 0; k < d.phi_d; k++)
+		phi[k] = clamped(mean_or(sums->phi[k] - explained[k], sums->phi_weight[k], 0), RANGE);
+}
+
+/* The sums of every pair change by -change[k] in each cell. */
+static void pairs_lower(struct lattice_dims d, const float *shown, const double *change, struct log_sums *sums)
+{
+	for (uint32_t row = 0; row < d.theta_h * d.theta_d; row++) {
+		const double shared = row / d.theta_d < paper_shared_from(d.theta_h) ? 1 : SHARED_WEIGHT;
+		double sum = 0;
+		for (uint32_t k = 0; k < d.phi_d; k++)
+			sum += (double)shown[(size_t)row * d.phi_d + k] * change[k];
+		sums->pair[row] -= shared * sum;
 	}
-	const double mean = total / (double)lattice->valid_count;
-	const double inverse = mean > 0 ? 1 / mean : 0;
-	out->mean = ldexp(mean / 3, -exponent);
-	means_finish(&out->axis[0], nh, inverse);
-	means_finish(&out->axis[1], nd, inverse);
-	means_finish(&out->axis[2], np, inverse);
-	means_finish(&out->hd, nh * nd, inverse);
-	means_finish(&out->hphi, nh * np, inverse);
-	for (size_t i = 0; i < cells; i++)
-		out->value[i] = dark_removed(out->value[i] * inverse);
+}
+
+static bool slice_is_black(struct lattice_dims d, const float *value, uint32_t i)
+{
+	const float *x = value + lattice_index(d, i, 0, 0);
+
+	for (size_t n = 0; n < (size_t)d.theta_d * d.phi_d; n++)
+		if (x[n] > 0)
+			return false;
+	return true;
+}
+
+bp_status marginals_fit(struct lattice_dims d, const float *value, const float *shown, struct marginals *out, bp_error *error)
+{
+	const size_t pairs = (size_t)d.theta_h * d.theta_d;
+	struct log_sums sums;
+	double h[LATTICE_EXTENT_MAX], j_mean[LATTICE_EXTENT_MAX] = {0};
+	double phi[LATTICE_EXTENT_MAX], before[LATTICE_EXTENT_MAX] = {0}, change[LATTICE_EXTENT_MAX];
+
+	sums.pair = calloc(2 * (pairs + d.phi_d), sizeof *sums.pair);
+	if (!sums.pair)
+		return error_memory(error, 2 * (pairs + d.phi_d) * sizeof *sums.pair);
+	sums.pair_weight = sums.pair + pairs;
+	sums.phi = sums.pair_weight + pairs;
+	sums.phi_weight = sums.phi + d.phi_d;
+	sums_gather(d, value, shown, &sums);
+	for (int turn = 0; turn < TURNS; turn++) {
+		pairs_fit_sums(d, &sums, h, j_mean);
+		phi_fit(d, shown, &sums, h, j_mean, phi);
+		for (uint32_t k = 0; k < d.phi_d; k++) {
+			change[k] = phi[k] - before[k];
+			before[k] = phi[k];
+		}
+		pairs_lower(d, shown, change, &sums);
+	}
+	for (uint32_t k = 0; k < d.phi_d; k++)
+		out->phi[k] = (float)fast_exp2(phi[k]);
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		for (uint32_t j = 0; j < d.theta_d; j++) {
+			const size_t at = (size_t)i * d.theta_d + j;
+			const double w = sums.pair_weight[at];
+			out->measured[at] = (float)w;
+			out->rest[at] = w > 0 ? (float)fast_exp2(clamped(sums.pair[at] / w - h[i] - j_mean[j], RANGE)) : 1;
+		}
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		out->h[i] = slice_is_black(d, value, i) ? 0 : (float)fast_exp2(h[i]);
+	for (uint32_t j = 0; j < d.theta_d; j++)
+		out->d[j] = (float)fast_exp2(j_mean[j]);
+	free(sums.pair);
 	return BP_OK;
 }

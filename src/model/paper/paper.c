@@ -1,40 +1,51 @@
 /* paper.c: what fitting and expanding the paper's model share. */
 #include "paper.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-#include "wavelet.h"
+#include "model/math/fast_math.h"
 
-uint32_t paper_plane_cells(uint32_t rows, uint32_t columns)
+float paper_step(uint16_t code)
 {
-	return wavelet_axis_for(rows).plane * wavelet_axis_for(columns).plane;
+	return (float)fast_exp2(((int)code - PAPER_STEP_ONE) / 256.0);
 }
 
-uint32_t paper_shared_from(uint32_t theta_h)
+float paper_coded(uint16_t code)
 {
-	uint32_t i = 0;
-
-	while ((uint64_t)9 * i * i < (uint64_t)4 * theta_h * theta_h)
-		i++;
-	return i;
+	return code ? (float)fast_exp2(((int)code - (1 << 15)) / 1024.0) : 0;
 }
 
-static void field_free(struct sparse_field *field)
+uint16_t paper_code(float marginal)
+{
+	if (!(marginal > 0))
+		return 0;
+	const long code = lrint(1024 * fast_log2((double)marginal)) + (1 << 15);
+	return (uint16_t)(code < 1 ? 1 : code > UINT16_MAX ? UINT16_MAX : code);
+}
+
+void sparse_field_free(struct sparse_field *field)
 {
 	free(field->index);
 	free(field->level);
+	field->index = NULL;
+	field->level = NULL;
+	field->count = 0;
 }
 
 void paper_free(struct paper_model *paper)
 {
 	if (!paper)
 		return;
-	for (int axis = 0; axis < 3; axis++)
-		free(paper->marginal[axis]);
-	field_free(&paper->hd);
-	field_free(&paper->hphi);
-	for (uint32_t i = 0; paper->slice && i < paper->slice_count; i++)
-		field_free(&paper->slice[i]);
-	free(paper->slice);
+	for (int c = 0; c < 3; c++) {
+		struct paper_channel *channel = &paper->channel[c];
+		for (int axis = 0; axis < 3; axis++)
+			free(channel->marginal[axis]);
+		sparse_field_free(&channel->hd);
+		sparse_field_free(&channel->hphi);
+		for (uint32_t i = 0; channel->slice && i < channel->slice_count; i++)
+			sparse_field_free(&channel->slice[i]);
+		free(channel->slice);
+	}
 	free(paper);
 }

@@ -1,17 +1,18 @@
 /* paper_expand.c: the paper's model becomes a table; the inverse of paper_fit.c. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "error.h"
 #include "field.h"
-#include "paper_kernels.h"
 #include "paper.h"
+#include "paper_kernels.h"
 
 /* Everything that a slice needs, expanded once. */
 struct slices {
 	struct lattice_dims dims;
-	const struct paper_model *paper;
-	uint32_t layers;
+	const struct paper_channel *channel;
+	bool with_slices;
 	float *hd, *hphi;          /* c_hd, c_hphi; all 1 where not loaded */
 	struct field_codec *codec; /* of c_dphi|h */
 	float *dphi;               /* the slice's c_dphi|h */
@@ -34,27 +35,30 @@ static void slices_free(struct slices *s)
 	field_codec_free(s->codec);
 }
 
-static bp_status pair_expand(const struct sparse_field *field, bool loaded, uint32_t rows, uint32_t columns, float **out, bp_error *error)
+static bp_status pair_expand(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *field, bool loaded, float **out,
+                             bp_error *error)
 {
-	const struct sparse_field one = {.rows = rows, .columns = columns};
+	const struct sparse_field one = {.count = 0};
 	struct field_codec *codec = NULL;
+	uint32_t rows, columns;
 
+	paper_field_extents(dims, kind, &rows, &columns);
 	*out = malloc((size_t)rows * columns * sizeof **out);
 	if (!*out)
 		return error_memory(error, (size_t)rows * columns * sizeof **out);
-	bp_status status = field_codec_create(WAVELET_HAAR, rows, columns, &codec, error);
+	bp_status status = field_codec_create(dims, kind, &codec, error);
 	if (!status)
 		field_expand(codec, loaded ? field : &one, *out);
 	field_codec_free(codec);
 	return status;
 }
 
-static bp_status slices_begin(const struct paper_model *paper, struct lattice_dims d, uint32_t layers, struct slices *s, bp_error *error)
+static bp_status slices_begin(struct lattice_dims d, const struct paper_channel *channel, uint32_t layers, struct slices *s, bp_error *error)
 {
-	*s = (struct slices){.dims = d, .paper = paper, .layers = layers};
-	bp_status status = pair_expand(&paper->hd, layers > PAPER_LAYER_PAIRS, d.theta_h, d.theta_d, &s->hd, error);
-	status = status ? status : pair_expand(&paper->hphi, layers > PAPER_LAYER_PAIRS, d.theta_h, d.phi_d, &s->hphi, error);
-	status = status ? status : field_codec_create(WAVELET_DAUBECHIES, d.theta_d, d.phi_d, &s->codec, error);
+	*s = (struct slices){.dims = d, .channel = channel, .with_slices = layers > PAPER_LAYER_SLICES && channel->slice_count};
+	bp_status status = pair_expand(d, PAPER_HD, &channel->hd, layers > PAPER_LAYER_PAIRS, &s->hd, error);
+	status = status ? status : pair_expand(d, PAPER_HPHI, &channel->hphi, layers > PAPER_LAYER_PAIRS, &s->hphi, error);
+	status = status ? status : field_codec_create(d, PAPER_SLICE, &s->codec, error);
 	if (status)
 		return status;
 	s->dphi = malloc((size_t)d.theta_d * d.phi_d * sizeof *s->dphi);
@@ -66,33 +70,30 @@ static bp_status slices_begin(const struct paper_model *paper, struct lattice_di
 static void slice_expand(struct slices *s, uint32_t i, float *out)
 {
 	const struct paper_kernels *kernels = paper_kernels_get();
-	const struct paper_model *paper = s->paper;
+	const struct paper_channel *channel = s->channel;
 	const struct lattice_dims d = s->dims;
-	const float h = paper->marginal[0][i], *hd = s->hd + (size_t)i * d.theta_d, *hphi = s->hphi + (size_t)i * d.phi_d;
+	const float h = channel->marginal[0][i], *hd = s->hd + (size_t)i * d.theta_d, *hphi = s->hphi + (size_t)i * d.phi_d;
 
-	if (s->layers > PAPER_LAYER_SLICES && paper->slice_count) {
-		if (i < paper->slice_count) { /* above, the last one stays */
-			s->dphi_is_one = paper->slice[i].count == 0;
-			if (!s->dphi_is_one)
-				field_expand(s->codec, &paper->slice[i], s->dphi);
-		}
-	} else {
+	if (!s->with_slices) {
 		s->dphi_is_one = true;
+	} else if (i < channel->slice_count) { /* above, the last one stays */
+		s->dphi_is_one = channel->slice[i].count == 0;
+		if (!s->dphi_is_one)
+			field_expand(s->codec, &channel->slice[i], s->dphi);
 	}
 	for (uint32_t k = 0; k < d.phi_d; k++)
-		s->column[k] = fminf(paper->marginal[2][k] * hphi[k], FACTOR_MAX);
+		s->column[k] = fminf(channel->marginal[2][k] * hphi[k], FACTOR_MAX);
 	for (uint32_t j = 0; j < d.theta_d; j++) {
-		float row = fminf(h * paper->marginal[1][j], FACTOR_MAX);
+		float row = fminf(h * channel->marginal[1][j], FACTOR_MAX);
 		row = fminf(row * hd[j], FACTOR_MAX);
 		kernels->paper_row(row, s->column, s->dphi_is_one ? NULL : s->dphi + (size_t)j * d.phi_d, d.phi_d, out + (size_t)j * d.phi_d);
 	}
 }
 
-bp_status paper_achromatic(const struct paper_model *paper, uint32_t layers, float *table, bp_error *error)
+bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table, bp_error *error)
 {
-	const struct lattice_dims dims = paper->dims;
 	struct slices s;
-	bp_status status = slices_begin(paper, dims, layers, &s, error);
+	bp_status status = slices_begin(dims, channel, layers, &s, error);
 
 	for (uint32_t i = 0; !status && i < dims.theta_h; i++)
 		slice_expand(&s, i, table + lattice_index(dims, i, 0, 0));
@@ -100,47 +101,61 @@ bp_status paper_achromatic(const struct paper_model *paper, uint32_t layers, flo
 	return status;
 }
 
-bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out, bp_error *error)
+/* A power of two beside the largest of |diffuse| and |specular| K of the channels, by exponents: the products may overflow. */
+static int unit_exponent(const struct paper_model *paper, const struct colour_fit colour[3])
 {
-	const struct paper_kernels *kernels = paper_kernels_get();
-	const struct lattice_dims d = paper->dims;
-	const size_t cells = (size_t)d.theta_d * d.phi_d;
-	float diffuse[3], specular[3], *achromatic = NULL;
-	struct slices s;
-	int scale_exponent, largest = -1000;
+	int largest = -1000;
 
-	/* The unit is a power of two beside the larger of |diffuse| and |specular| K, by exponents: the product may overflow. */
-	const double scale = frexp(paper->scale, &scale_exponent);
 	for (int c = 0; c < 3; c++) {
-		int e;
+		int scale_exponent, e;
+		const double scale = frexp(paper->channel[c].scale, &scale_exponent);
 		frexp(colour[c].diffuse, &e);
 		largest = colour[c].diffuse != 0 && e > largest ? e : largest;
 		frexp(colour[c].specular, &e);
 		largest = colour[c].specular * scale != 0 && e + scale_exponent > largest ? e + scale_exponent : largest;
 	}
-	largest = largest > 1000 ? 1000 : largest;
-	out->unit = ldexp(1, largest);
-	for (int c = 0; c < 3; c++) {
-		diffuse[c] = (float)ldexp(colour[c].diffuse, -largest);
-		specular[c] = (float)ldexp(colour[c].specular * scale, scale_exponent - largest);
-	}
-	const float limit = (float)fmin(VALUE_MAX / out->unit, 1e37);
-	bp_status status = slices_begin(paper, d, layers, &s, error);
-	if (status)
-		goto out;
-	achromatic = malloc(cells * sizeof *achromatic);
-	if (!achromatic) {
-		status = error_memory(error, cells * sizeof *achromatic);
-		goto out;
-	}
-	for (uint32_t i = 0; i < d.theta_h; i++) {
-		float *const rgb[3] = {out->rgb[0] + i * cells, out->rgb[1] + i * cells, out->rgb[2] + i * cells};
+	return largest > 1000 ? 1000 : largest;
+}
 
-		slice_expand(&s, i, achromatic);
-		kernels->paper_colour(achromatic, cells, diffuse, specular, limit, rgb);
+/* Of a model with one channel alone, all have its values. */
+static void channels_fill(const struct paper_model *paper, struct expansion *out)
+{
+	int there = 0;
+
+	while (there < 2 && !paper->channel[there].marginal[0])
+		there++;
+	for (int c = 0; c < 3; c++)
+		if (!paper->channel[c].marginal[0])
+			memcpy(out->rgb[c], out->rgb[there], lattice_cells(out->dims) * sizeof(float));
+}
+
+bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out, bp_error *error)
+{
+	const struct lattice_dims d = paper->dims;
+	const size_t cells = (size_t)d.theta_d * d.phi_d;
+	const int largest = unit_exponent(paper, colour);
+
+	out->unit = ldexp(1, largest);
+	const float limit = (float)fmin(VALUE_MAX / out->unit, 1e37);
+	for (int c = 0; c < 3; c++) {
+		const struct paper_channel *channel = &paper->channel[c];
+		int scale_exponent;
+		const double scale = frexp(channel->scale, &scale_exponent);
+		const float diffuse = (float)ldexp(colour[c].diffuse, -largest);
+		const float specular = (float)ldexp(colour[c].specular * scale, scale_exponent - largest);
+		struct slices s;
+
+		if (!channel->marginal[0])
+			continue;
+		bp_status status = slices_begin(d, channel, layers, &s, error);
+		for (uint32_t i = 0; !status && i < d.theta_h; i++) {
+			slice_expand(&s, i, out->rgb[c] + i * cells);
+			paper_kernels_get()->paper_colour(diffuse, specular, limit, cells, out->rgb[c] + i * cells);
+		}
+		slices_free(&s);
+		if (status)
+			return status;
 	}
-out:
-	free(achromatic);
-	slices_free(&s);
-	return status;
+	channels_fill(paper, out);
+	return BP_OK;
 }

@@ -1,152 +1,164 @@
 /*
- * paper_fit.c: a measured lattice becomes the paper's model.
+ * paper_fit.c: a measured lattice becomes the paper's model, channel by channel.
  *
- *     0  density                 marginal.h
- *     1  marginals               marginal.h
- *     2  c_hd, c_hphi            copula.h, field.h: Haar, 1/16 of the cells
- *     3  c_dphi|h per slice      Daubechies, 1/64
- *     4  one slice for all from 40 degrees on
- *     5  colours                 robust.h, on the decoded model
+ *     0  density                      importance.h: values in a unit, and what an error in each of them does to a picture
+ *     1  marginals                    marginal.h
+ *     2  c_hd, c_hphi, shared slice   pairs.h: Haar, 1/16 of the cells; one slice for all from 40 degrees on
+ *     3  c_dphi|h per slice           slices.h: Daubechies, 1/64
+ *     4  colour                       robust.h, on the decoded model, unless that loses it
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "error.h"
+#include "paper_plane.h"
+#include "slices.h"
 #include "stage.h"
-#include "copula.h"
-#include "field.h"
-#include "model/math/fill.h"
-#include "paper.h"
-#include "model/robust/robust.h"
+#include "watch.h"
 
-/* A pair within this rms of 1 is left out: a tenth of the 1 % that measurements reproduce to. */
-static const double TOLERANCE = 1e-3;
-enum { KEEP_PAIR = 16, KEEP_SLICE = 64 };
+static const double LINE_WORSE = 1.25;
 
-/* One marginal with mean 1; indices without a valid cell get what their neighbours suggest. Returns the mean that was divided out. */
-static bp_status marginal_fit(const struct means *means, uint32_t n, bool periodic, float **out, double *mean, bp_error *error)
+/* What the channels share. */
+struct workshop {
+	struct lattice_dims dims;
+	struct importance *importance;
+	double unit; /* of value, 1/sr */
+	struct sparse_fit pairs[2], slices;
+	float *value, *weight, *shown; /* [cells]; value becomes the decoded model */
+	float *fields;                 /* of a channel_fit */
+};
+
+static void workshop_free(struct workshop *w)
 {
-	struct fill *fill = NULL;
-	float *f = malloc(n * sizeof *f);
-	double sum = 0, largest = 0;
+	importance_free(w->importance);
+	sparse_fit_free(&w->pairs[0]);
+	sparse_fit_free(&w->pairs[1]);
+	sparse_fit_free(&w->slices);
+	free(w->value);
+	free(w->fields);
+}
 
-	if (!f)
-		return error_memory(error, n * sizeof *f);
-	*out = f;
-	bp_status status = fill_create(1, n, false, periodic, &fill, error);
+static bp_status workshop_open(const struct lattice *lattice, struct workshop *w, bp_error *error)
+{
+	const struct lattice_dims d = lattice->dims;
+	const size_t cells = lattice_cells(d);
+	const size_t fields = (size_t)d.theta_h * (d.theta_d + d.phi_d) + 2 * (size_t)d.theta_d * d.phi_d;
+	struct wavelet_plane plane[3];
+
+	memset(w, 0, sizeof *w);
+	w->dims = d;
+	for (int kind = 0; kind < 3; kind++)
+		plane[kind] = paper_plane(d, (enum paper_field)kind);
+	bp_status status = importance_create(d, &w->importance, error);
+	status = status ? status : sparse_fit_create(&plane[PAPER_HD], &w->pairs[0], error);
+	status = status ? status : sparse_fit_create(&plane[PAPER_HPHI], &w->pairs[1], error);
+	status = status ? status : sparse_fit_create(&plane[PAPER_SLICE], &w->slices, error);
 	if (status)
 		return status;
-	for (uint32_t i = 0; i < n; i++)
-		largest = fmax(largest, means->value[i]);
-	for (uint32_t i = 0; i < n; i++)
-		f[i] = largest > 0 ? (float)(means->value[i] / largest) : 1;
-	fill_plane(fill, f, means->valid, 1);
-	fill_free(fill);
-	for (uint32_t i = 0; i < n; i++)
-		sum += (double)f[i];
-	*mean = largest > 0 ? largest * (sum / n) : 1;
-	for (uint32_t i = 0; i < n; i++)
-		f[i] = (float)((double)f[i] / (sum / n));
+	w->value = malloc(3 * cells * sizeof *w->value);
+	w->fields = malloc(fields * sizeof *w->fields);
+	if (!w->value || !w->fields)
+		return error_memory(error, (3 * cells + fields) * sizeof(float));
+	w->weight = w->value + cells;
+	w->shown = w->weight + cells;
+	w->unit = importance_unit(w->importance, lattice);
+	importance_shown(w->importance, lattice, w->shown);
 	return BP_OK;
 }
 
-static bp_status pairs_fit(const struct density *density, struct paper_model *paper, double *value, uint8_t *defined, bp_error *error)
+static bp_status marginals_keep(const struct channel_fit *fit, struct paper_channel *out, bp_error *error)
 {
-	const struct lattice_dims d = density->dims;
-	struct field_codec *hd = NULL, *hphi = NULL;
-	bp_status status = field_codec_create(WAVELET_HAAR, d.theta_h, d.theta_d, &hd, error);
+	const uint32_t extents[3] = {fit->dims.theta_h, fit->dims.theta_d, fit->dims.phi_d};
+	const float *const from[3] = {fit->marginal.h, fit->marginal.d, fit->marginal.phi};
 
-	if (status)
-		goto out;
-	copula_hd(density, value, defined);
-	status = field_fit(hd, value, defined, d.theta_h * d.theta_d / KEEP_PAIR, TOLERANCE, &paper->hd, error);
-	if (status)
-		goto out;
-	status = field_codec_create(WAVELET_HAAR, d.theta_h, d.phi_d, &hphi, error);
-	if (status)
-		goto out;
-	copula_hphi(density, value, defined);
-	status = field_fit(hphi, value, defined, d.theta_h * d.phi_d / KEEP_PAIR, TOLERANCE, &paper->hphi, error);
-out:
-	field_codec_free(hd);
-	field_codec_free(hphi);
+	for (int axis = 0; axis < 3; axis++) {
+		out->marginal[axis] = malloc(extents[axis] * sizeof(float));
+		if (!out->marginal[axis])
+			return error_memory(error, extents[axis] * sizeof(float));
+		memcpy(out->marginal[axis], from[axis], extents[axis] * sizeof(float));
+	}
+	return BP_OK;
+}
+
+/* All but the colour. */
+static bp_status channel_fit(struct workshop *w, const struct lattice *lattice, int c, struct paper_channel *out, bp_error *error)
+{
+	const struct lattice_dims d = w->dims;
+	struct channel_fit fit = {.dims = d, .value = w->value, .weight = w->weight, .hd = w->fields};
+
+	stage_enter(STAGE_CLEAN);
+	importance_weigh(w->importance, lattice, c, w->unit, w->value, w->weight);
+	fit.hphi = fit.hd + (size_t)d.theta_h * d.theta_d;
+	fit.shared = fit.hphi + (size_t)d.theta_h * d.phi_d;
+	fit.shared_weight = fit.shared + (size_t)d.theta_d * d.phi_d;
+	bp_status status = marginals_alloc(d, &fit.marginal, error);
+	stage_enter(STAGE_TRANSFORM);
+	status = status ? status : marginals_fit(d, w->value, w->shown, &fit.marginal, error);
+	status = status ? status : pairs_fit(&fit, w->pairs, &out->hd, &out->hphi, error);
+	status = status ? status : marginals_keep(&fit, out, error);
+	if (!status) {
+		out->slice_count = paper_shared_from(d.theta_h) + 1;
+		out->scale = (double)fit.level * w->unit;
+		out->slice = calloc(out->slice_count, sizeof *out->slice);
+		status = out->slice ? slices_fit(&fit, &w->slices, out->slice, error) : error_memory(error, out->slice_count * sizeof *out->slice);
+	}
+	marginals_free(&fit.marginal);
 	return status;
 }
 
-static bp_status slices_fit(const struct density *density, struct paper_model *paper, double *value, uint8_t *defined, bp_error *error)
+/* What a picture shows of a channel's error under a line: the weighted sum of squares, in the unit. model: w->value. */
+static double line_error(const struct workshop *w, const struct lattice *lattice, int c, double level, double diffuse, double specular)
 {
-	const struct lattice_dims d = density->dims;
-	const uint32_t shared = paper_shared_from(d.theta_h);
-	struct field_codec *codec = NULL;
-	bp_status status = field_codec_create(WAVELET_DAUBECHIES, d.theta_d, d.phi_d, &codec, error);
+	double sum = 0;
 
-	if (status)
-		return status;
-	paper->slice = calloc(shared + 1, sizeof *paper->slice);
-	if (!paper->slice)
-		status = error_memory(error, (shared + 1) * sizeof *paper->slice);
-	else
-		paper->slice_count = shared + 1;
-	for (uint32_t i = 0; !status && i <= shared; i++) {
-		if (i < shared)
-			copula_slice(density, i, value, defined);
-		else
-			copula_shared(density, i, value, defined);
-		status = field_fit(codec, value, defined, d.theta_d * d.phi_d / KEEP_SLICE, TOLERANCE, &paper->slice[i], error);
+	for (uint32_t row = 0; row < w->dims.theta_h * w->dims.theta_d; row++) {
+		const size_t at = (size_t)row * w->dims.phi_d;
+		double of_row = 0;
+		for (size_t n = at; n < at + w->dims.phi_d; n++) {
+			const double value = diffuse + specular * level * (double)w->value[n], e = lattice->rgb[c][n] / w->unit - (value > 0 ? value : 0);
+			of_row += lattice->valid[n] ? (double)w->weight[n] * e * e : 0;
+		}
+		sum += of_row;
 	}
-	field_codec_free(codec);
-	return status;
+	return sum;
+}
+
+/*
+ * The regression follows the many: where more than half of a channel is as good as black, its line is 0, lobe and all. Where it loses
+ * that much against the model as it is, the model stays as it is.
+ */
+static void colour_settle(const struct workshop *w, const struct lattice *lattice, int c, const struct paper_channel *channel, struct colour_fit *colour)
+{
+	const double level = channel->scale / w->unit;
+	const double plain = line_error(w, lattice, c, level, 0, 1);
+	const double line = line_error(w, lattice, c, level, colour->diffuse / w->unit, colour->specular);
+
+	if (!(line <= LINE_WORSE * plain)) {
+		colour->diffuse = 0;
+		colour->specular = 1;
+	}
 }
 
 bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
 {
-	const struct lattice_dims d = lattice->dims;
-	const size_t largest_field = (size_t)(d.theta_h > d.theta_d ? d.theta_h : d.theta_d) * (d.theta_d > d.phi_d ? d.theta_d : d.phi_d);
 	struct paper_model *paper = calloc(1, sizeof *paper);
-	struct density density = {.value = NULL};
-	double *value = NULL;
-	uint8_t *defined = NULL;
-	float *achromatic = NULL;
-	double means[3];
+	struct workshop w;
 
 	if (!paper)
 		return error_memory(error, sizeof *paper);
-	paper->dims = d;
-	stage_enter(STAGE_CLEAN);
-	bp_status status = density_build(lattice, &density, error);
-	if (status)
-		goto out;
-	value = malloc(largest_field * sizeof *value);
-	defined = malloc(largest_field);
-	achromatic = malloc(lattice_cells(d) * sizeof *achromatic);
-	if (!value || !defined || !achromatic) {
-		status = error_memory(error, lattice_cells(d) * sizeof *achromatic);
-		goto out;
+	paper->dims = lattice->dims;
+	bp_status status = workshop_open(lattice, &w, error);
+	for (int c = 0; !status && c < 3; c++) {
+		status = watch_tell(watch, 0.05 + 0.3 * c, error);
+		status = status ? status : channel_fit(&w, lattice, c, &paper->channel[c], error);
+		stage_enter(STAGE_REGRESSION);
+		status = status ? status : paper_channel_expand(paper->dims, &paper->channel[c], PAPER_LAYERS, w.value, error);
+		status = status ? status : robust_fit_channel(lattice, c, w.value, paper->channel[c].scale, &colour[c], error);
+		if (!status)
+			colour_settle(&w, lattice, c, &paper->channel[c], &colour[c]);
 	}
-	stage_enter(STAGE_TRANSFORM);
-	status = watch_tell(watch, 0.1, error);
-	status = status ? status : marginal_fit(&density.axis[0], d.theta_h, false, &paper->marginal[0], &means[0], error);
-	status = status ? status : marginal_fit(&density.axis[1], d.theta_d, false, &paper->marginal[1], &means[1], error);
-	status = status ? status : marginal_fit(&density.axis[2], d.phi_d, true, &paper->marginal[2], &means[2], error);
-	if (status)
-		goto out;
-	/* The copulas are ratios of means, the marginals have mean 1: their means go into the scale. */
-	paper->scale = density.mean * means[0] * means[1] * means[2];
-	status = pairs_fit(&density, paper, value, defined, error);
-	status = status ? status : watch_tell(watch, 0.3, error);
-	status = status ? status : slices_fit(&density, paper, value, defined, error);
-	status = status ? status : watch_tell(watch, 0.5, error);
-	if (status)
-		goto out;
-	density_free(&density);
-	status = paper_achromatic(paper, PAPER_LAYERS, achromatic, error);
-	stage_enter(STAGE_REGRESSION);
-	status = status ? status : robust_fit_colour(lattice, achromatic, paper->scale, colour, error);
-out:
-	density_free(&density);
-	free(value);
-	free(defined);
-	free(achromatic);
+	workshop_free(&w);
 	if (status)
 		paper_free(paper);
 	else

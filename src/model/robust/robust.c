@@ -130,7 +130,7 @@ bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_f
 		scaled[i] = y[i] * q.a * q.b;
 	}
 	design_prepare(&design);
-	robust_iterate(&design, scaled, out);
+	robust_iterate(&design, scaled, ROBUST_ITERATIONS_MAX, out);
 	fit_unscale(out, design.x_exponent, y_exponent);
 out:
 	free(scaled);
@@ -164,10 +164,11 @@ static void fit_still(struct robust_fit *fit)
 		fit->slope = 0;
 }
 
-bp_status robust_fit_colour(const struct lattice *lattice, const float *achromatic, double unit, struct colour_fit out[3],
-                            bp_error *error)
+bp_status robust_fit_channel(const struct lattice *lattice, int channel, const float *model, double unit, struct colour_fit *out,
+                             bp_error *error)
 {
 	const size_t n = lattice->valid_count;
+	struct robust_fit fit = {0};
 	struct design design;
 	double *y = NULL;
 	size_t k = 0;
@@ -182,41 +183,34 @@ bp_status robust_fit_colour(const struct lattice *lattice, const float *achromat
 		status = error_memory(error, n * sizeof *y);
 		goto out;
 	}
-	for (size_t i = 0, end = 0; run_next(lattice, &i, &end);)
-		for (; i < end; i++)
-			design.x[k++] = (double)achromatic[i];
-	const int float_exponent = exponent_of(largest_size(design.x, n));
-	const struct power p = power_of(-float_exponent);
+	for (size_t i = 0, end = 0; run_next(lattice, &i, &end); k += end - i) {
+		memcpy(y + k, lattice->rgb[channel] + i, (end - i) * sizeof *y);
+		for (size_t m = i; m < end; m++)
+			design.x[k + m - i] = (double)model[m];
+	}
+	const int float_exponent = exponent_of(largest_size(design.x, n)), y_exponent = exponent_of(largest_size(y, n));
+	const struct power p = power_of(-float_exponent), q = power_of(-y_exponent);
 	/* The unit enters by its exponent and mantissa, so that it may be of any size. */
 	int unit_exponent;
 	const double mantissa = frexp(unit, &unit_exponent);
 	design.x_exponent = float_exponent + unit_exponent;
-	for (k = 0; k < n; k++)
+	for (k = 0; k < n; k++) {
 		design.x[k] = design.x[k] * p.a * p.b * mantissa;
-	if (n > 1)
-		design_prepare(&design);
-	for (int c = 0; c < 3; c++) {
-		struct robust_fit fit = {0};
-
-		k = 0;
-		for (size_t i = 0, end = 0; run_next(lattice, &i, &end); k += end - i)
-			memcpy(y + k, lattice->rgb[c] + i, (end - i) * sizeof *y);
-		const int y_exponent = exponent_of(largest_size(y, n));
-		const struct power q = power_of(-y_exponent);
-		for (k = 0; k < n; k++)
-			y[k] = y[k] * q.a * q.b;
-		if (n == 1)
-			fit = (struct robust_fit){.intercept = y[0], .converged = true};
-		else
-			robust_iterate(&design, y, &fit);
-		fit_still(&fit);
-		fit_unscale(&fit, design.x_exponent, y_exponent);
-		out[c] = (struct colour_fit){.diffuse = fit.intercept,
-		                             .specular = fit.slope,
-		                             .iterations = fit.iterations,
-		                             .converged = fit.converged,
-		                             .rejected = (double)fit.rejected / (double)n};
+		y[k] = y[k] * q.a * q.b;
 	}
+	if (n == 1) {
+		fit = (struct robust_fit){.intercept = y[0], .converged = true};
+	} else {
+		design_prepare(&design);
+		robust_iterate(&design, y, ROBUST_CHANNEL_ITERATIONS_MAX, &fit);
+	}
+	fit_still(&fit);
+	fit_unscale(&fit, design.x_exponent, y_exponent);
+	*out = (struct colour_fit){.diffuse = fit.intercept,
+	                           .specular = fit.slope,
+	                           .iterations = fit.iterations,
+	                           .converged = fit.converged,
+	                           .rejected = (double)fit.rejected / (double)n};
 out:
 	free(y);
 	design_free(&design);

@@ -2,7 +2,7 @@
  * robust.h: robust linear regression y = intercept + slope x (DuMouchel and O'Brien 1989).
  *
  * Ordinary least squares first. Leverages h = 1/n + (x - mean)^2/Sxx of the unweighted design, clipped at
- * 0.9999. Then, at most 100 times:
+ * 0.9999. Then, at most 100 times (5,000 for a channel of a material):
  *
  *     v = r/sqrt(1 - h)                            r = y - intercept - slope x
  *     s = median|v|/0.6745                         without the smallest |v|; not centred
@@ -38,7 +38,7 @@
 
 #include "merl/lattice.h"
 
-enum { ROBUST_ITERATIONS_MAX = 100 };
+enum { ROBUST_ITERATIONS_MAX = 100, ROBUST_CHANNEL_ITERATIONS_MAX = 5000 };
 
 struct robust_fit {
 	double intercept, slope;
@@ -53,7 +53,7 @@ struct robust_fit {
  */
 bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error);
 
-/* Robust regression of one channel on the achromatic model: measured = diffuse + specular * model (1/sr). */
+/* Robust regression of one channel on its model: measured = diffuse + specular * model (1/sr). */
 struct colour_fit {
 	double diffuse;  /* 1/sr */
 	double specular; /* the model is in 1/sr, so this is a ratio */
@@ -63,10 +63,10 @@ struct colour_fit {
 };
 
 /*
- * Colour: for each channel the regression of the measured values (1/sr) on unit * achromatic over the
- * lattice's valid cells; achromatic[cells]. Terms below 2^-126 of the channel's largest value are 0.
+ * The regression of a channel's measured values (1/sr) on unit * model over the lattice's valid cells; model[cells]. Terms below 2^-126
+ * of the channel's largest value are 0. It goes on until it converges, which takes 10 to 2,000 iterations on measured materials.
  */
-bp_status robust_fit_colour(const struct lattice *lattice, const float *achromatic, double unit, struct colour_fit out[3],
-                            bp_error *error);
+bp_status robust_fit_channel(const struct lattice *lattice, int channel, const float *model, double unit, struct colour_fit *out,
+                             bp_error *error);
 
 #endif

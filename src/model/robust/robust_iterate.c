@@ -17,7 +17,7 @@ static struct robust_sample picks_copy(struct design *design, const double *y)
 	return (struct robust_sample){picked_x, picked_y, design->picked_excess, count};
 }
 
-void robust_iterate(struct design *design, const double *y, struct robust_fit *out)
+void robust_iterate(struct design *design, const double *y, uint32_t limit, struct robust_fit *out)
 {
 	struct walk walk = {
 		.kernels = robust_kernels_get(),
@@ -32,9 +32,9 @@ void robust_iterate(struct design *design, const double *y, struct robust_fit *o
 	design->anchor.placed = false;
 	out->converged = false;
 	out->iterations = 0;
-	while (!out->converged && out->iterations < ROBUST_ITERATIONS_MAX) {
+	while (!out->converged && out->iterations < limit) {
 		out->iterations++;
-		walk_step(&walk, ROBUST_ITERATIONS_MAX - out->iterations);
+		walk_step(&walk, limit - out->iterations);
 		out->converged = line_settled(&walk.before, &walk.line);
 	}
 	out->rejected = walk.sums.rejected;

@@ -22,8 +22,8 @@ struct design {
 
 /*
  * The regression of y (n values scaled so that the largest is about 1) on a prepared design: coefficients in the
- * scaled units. n >= 2.
+ * scaled units. n >= 2. At most `limit` iterations.
  */
-void robust_iterate(struct design *design, const double *y, struct robust_fit *out);
+void robust_iterate(struct design *design, const double *y, uint32_t limit, struct robust_fit *out);
 
 #endif

@@ -45,9 +45,16 @@ static void row_print(const struct record_head *head, int width)
 	putchar('\n');
 }
 
+/* Of which channel a section of the paper's profile is, as its name ends. */
+static const char *section_channel(unsigned type)
+{
+	static const char *const ENDS[] = {", R", ", G", ", B"};
+	return type >= SECTION_MARGINALS && type < SECTION_MARGINALS + 3 * SECTION_CHANNEL ? ENDS[(type - SECTION_MARGINALS) / SECTION_CHANNEL] : "";
+}
+
 static const char *section_name(unsigned type)
 {
-	switch (type) {
+	switch (type < SECTION_MARGINALS + 3 * SECTION_CHANNEL ? (type - SECTION_MARGINALS) % SECTION_CHANNEL + SECTION_MARGINALS : type) {
 	case SECTION_MARGINALS: return "marginals";
 	case SECTION_PAIR_HD: return "c_hd";
 	case SECTION_PAIR_HPHI: return "c_hphi";
@@ -86,8 +93,8 @@ static void material_print(const struct record_head *head)
 	}
 	for (uint32_t i = 0; i < head->section_count; i++) {
 		const struct record_section *section = &head->sections[i];
-		printf("  section %-3" PRIu32 " %8" PRIu32 " bytes  layer %u  type %u (%s)  codec %u.%u", i, section->bytes, section->layer,
-		       section->type, section_name(section->type), section->codec, section->version);
+		printf("  section %-3" PRIu32 " %8" PRIu32 " bytes  layer %u  type %u (%s%s)  codec %u.%u", i, section->bytes, section->layer,
+		       section->type, section_name(section->type), section_channel(section->type), section->codec, section->version);
 		if (section->error == section->error)
 			printf("  error %.6g", section->error);
 		putchar('\n');
