@@ -150,7 +150,7 @@ class Record:
         demand(zlib.crc32(head[:-4]) == struct.unpack("<I", head[-4:])[0], "checksum", at + self.head_bytes - 4, "record's head")
         (version, self.profile, self.codec_version, h, d, p, n, layers, sections, self.left_out, self.budget, self.max_error,
          self.effort, reserved, self.horizon, self.source_bytes) = struct.unpack_from("<HHIHHHBBHHIdIIdQ", head, 16)
-        demand(version == 1, "unsupported", at + 16, f"record version {version}")
+        demand(version == 2, "unsupported", at + 16, f"record version {version}")
         self.dims = (h, d, p)
         demand(all(4 <= x <= 1024 for x in self.dims) and h * d * p <= 1 << 24, "corrupt", at + 24, "lattice")
         demand(1 <= layers <= 16 and sections <= 64 and n >= 1, "corrupt", at + 30, "counts")
@@ -162,16 +162,16 @@ class Record:
         for diffuse, specular, rejected, _, converged in self.colour:
             demand(math.isfinite(diffuse) and math.isfinite(specular) and 0 <= rejected <= 1 and converged <= 1,
                    "corrupt", at + 112, "colour")
-        self.layers = [struct.unpack_from("<IIddd", head, 208 + 32 * i) for i in range(layers)]
+        self.layers = [struct.unpack_from("<Ifddd", head, 208 + 32 * i) for i in range(layers)]
         self.sections = [struct.unpack_from("<HHHHHHIIId", head, 208 + 32 * (layers + i)) for i in range(sections)]
         end, before = self.head_bytes, 0
         for kind, codec, version, layer, flags, reserved, offset, size, crc, error in self.sections:
             demand(reserved == 0 and before <= layer < layers and offset == end and size >= 1, "corrupt", at + 208, "section table")
             end, before = end + size, layer
         demand(end == self.bytes, "corrupt", at + 12, "record bytes")
-        for number, (size, reserved, *figures) in enumerate(self.layers):
+        for number, (size, *figures) in enumerate(self.layers):
             ends = [s[6] + s[7] for s in self.sections if s[3] <= number]
-            demand(size == max(ends, default=self.head_bytes) and reserved == 0 and all(f >= 0 for f in figures),
+            demand(size == max(ends, default=self.head_bytes) and all(f >= 0 for f in figures),
                    "corrupt", at + 208, "layer table")
         self.name = check_name(head[-4 - n:-4], at)
         demand(self.name.encode() == entry[0], "corrupt", at, "not the name that the index says")
@@ -639,7 +639,26 @@ def inverse_lift(x):
     return z
 
 
-SPECTRAL_KINDS = {(16, 0, 2), (17, 1, 2)}
+SPECTRAL_KINDS = {(16, 0, 3), (17, 1, 2)}
+
+
+def weight_factors(hs, ds, weights):
+    """factor[row][column] of a spectrum's coefficients: they are coded divided by these."""
+    steps = len(hs) - 1
+
+    def place(extents, i, level):
+        cell = i if level == steps else 2 * i if i < extents[level + 1] else 2 * (i - extents[level + 1]) + 1
+        return min(max((cell + 0.5) / extents[level] * 10 - 0.5, 0.0), 9.0)
+
+    def factor(i, j):
+        level = next((l for l in range(steps) if i >= hs[l + 1] or j >= ds[l + 1]), steps)
+        y, x = place(hs, i, level), place(ds, j, level)
+        row, column = min(int(y), 8), min(int(x), 8)
+        w = [weights[10 * (row + a) + column + b] for a in (0, 1) for b in (0, 1)]
+        above, below = (w[n] + (x - column) * (w[n + 1] - w[n]) for n in (0, 2))
+        return 2.0 ** ((above + (y - row) * (below - above)) / 16)
+
+    return [[factor(i, j) for j in range(ds[0])] for i in range(hs[0])]
 
 
 def decode_spectral(record, layers):
@@ -647,8 +666,9 @@ def decode_spectral(record, layers):
     wanted = record.load_list(layers, SPECTRAL_KINDS)
     demand([(s[0], s[3]) for s, _ in wanted] == [(16, 0)] + [(17, l) for l in range(layers)], "corrupt", record.base, "sections of fields and planes")
     data = wanted[0][1]
-    demand(len(data) == 76, "corrupt", record.base, "the fields' bytes")
-    unit, *rotation, step, c0, c1, c2, count = struct.unpack("<d12fffffI", data)
+    demand(len(data) == 176, "corrupt", record.base, "the fields' bytes")
+    unit, *rotation, step, c0, c1, c2, count = struct.unpack_from("<d12fffffI", data)
+    weights = data[76:]
     base, rotation = rotation[:3], rotation[3:]
     demand(2.0 ** -1022 <= unit <= 2.0 ** 999 and all(abs(x) <= 64 for x in base) and
            all(abs(r) <= 1.001 for r in rotation) and
@@ -664,6 +684,7 @@ def decode_spectral(record, layers):
             demand(coder.at <= len(data) - 4, "corrupt", record.base, "planes are short")
         demand(coder.at == len(data) - 4, "corrupt", record.base, "planes are long")
 
+    factor = weight_factors(planes.hs, planes.ds, weights)
     fields = []
     for f in range(3):
         spectra = [[[0.0] * d for _ in range(h)] for _ in range(p)]
@@ -673,8 +694,11 @@ def decode_spectral(record, layers):
             r = count - 1 - (end - 1 - (f * p + m)) // (3 * p)
             a = (k >> 2) >> r << r
             if a:
+                negative = planes.sign[g, m, b, y, x] == 2
                 value = (a + (c2 * 2 ** r if r else c0 if a == 1 else c1)) * step
-                spectra[m][planes.bands[b].y0 + y][planes.bands[b].x0 + x] = -value if planes.sign[g, m, b, y, x] == 2 else value
+                y, x = planes.bands[b].y0 + y, planes.bands[b].x0 + x
+                value *= factor[y][x]
+                spectra[m][y][x] = -value if negative else value
         for plane in spectra:
             if not any(map(any, plane)):
                 continue

@@ -155,6 +155,7 @@ typedef struct bp_layer {
 	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) over valid cells and channels, e decoded, b measured */
 	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller of the two cosines at the cell's lower corner */
 	double largest_relative; /* largest |e - b|/(b + 1e-2) */
+	double seen_log_rmse;    /* log_rmse over the valid cells that do not lie wholly below the horizon only; of float's precision */
 } bp_layer;
 
 /* One section of a record. */
@@ -335,7 +336,7 @@ typedef struct bp_allocator {
 /* What to load. Zeroed but for struct_bytes it asks for the whole record, in RGB, expanded, without sampling. */
 typedef struct bp_load_options {
 	size_t struct_bytes;  /* sizeof(bp_load_options) */
-	double max_log_rmse;  /* > 0: the fewest layers whose log_rmse is at most this, all when none is; 0: all */
+	double max_log_rmse;  /* > 0: the fewest layers whose seen_log_rmse is at most this, all when none is; 0: all */
 	bp_form form;
 	bp_colour colour;
 	int sampling;         /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */

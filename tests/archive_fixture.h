@@ -78,7 +78,7 @@ FIXTURE uint8_t *fixture_record(const char *name, uint32_t layers, size_t sectio
 	fixture_head(&head, name);
 	head.layer_count = layers;
 	for (uint32_t l = 0; l < layers; l++) {
-		head.layers[l].fidelity = (struct fidelity){ 0.5 / (l + 1), 0.25 / (l + 1), 3.0 / (l + 1) };
+		head.layers[l].fidelity = (struct fidelity){ 0.5 / (l + 1), 0.375 / (l + 1), 0.25 / (l + 1), 3.0 / (l + 1) };
 		for (int s = 0; s < 2; s++) {
 			struct byte_buffer *bytes = section_add(&sections, SECTION_SLICES, 1, 1, l, s == 0 ? SECTION_REQUIRED : 0,
 			                                        s == 0 ? 0.125 : NAN);

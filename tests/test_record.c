@@ -99,7 +99,7 @@ static void hostile_values_under_a_right_checksum_are_refused(void **state)
 	} cases[] = {
 		{ 8, 0, 4, BP_ERROR_CORRUPT }, { 8, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* head bytes */
 		{ 12, 0, 4, BP_ERROR_CORRUPT }, { 12, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* record bytes */
-		{ 16, 2, 2, BP_ERROR_UNSUPPORTED }, /* record version */
+		{ 16, 1, 2, BP_ERROR_UNSUPPORTED }, /* record version */
 		{ 24, 3, 2, BP_ERROR_CORRUPT }, { 26, 1025, 2, BP_ERROR_CORRUPT }, { 28, 0, 2, BP_ERROR_CORRUPT }, /* extents */
 		{ 30, 0, 1, BP_ERROR_CORRUPT }, { 30, 255, 1, BP_ERROR_CORRUPT }, /* name bytes */
 		{ 31, 0, 1, BP_ERROR_CORRUPT }, { 31, 17, 1, BP_ERROR_CORRUPT }, /* layers */
@@ -109,7 +109,7 @@ static void hostile_values_under_a_right_checksum_are_refused(void **state)
 		{ 56, nan_bits, 8, BP_ERROR_CORRUPT }, { 56, two, 8, BP_ERROR_CORRUPT }, /* horizon */
 		{ 112, nan_bits, 8, BP_ERROR_CORRUPT }, { 120, infinity, 8, BP_ERROR_CORRUPT }, { 128, two, 8, BP_ERROR_CORRUPT },
 		{ 140, 2, 4, BP_ERROR_CORRUPT }, /* converged */
-		{ 208, 0, 4, BP_ERROR_CORRUPT }, { 212, 1, 4, BP_ERROR_CORRUPT }, { 216, nan_bits, 8, BP_ERROR_CORRUPT }, /* layer 0 */
+		{ 208, 0, 4, BP_ERROR_CORRUPT }, { 212, 0xBF800000, 4, BP_ERROR_CORRUPT }, { 216, nan_bits, 8, BP_ERROR_CORRUPT }, /* layer 0 */
 		{ 272 + 6, 2, 2, BP_ERROR_CORRUPT }, { 272 + 10, 1, 2, BP_ERROR_CORRUPT }, /* section 0: layer, reserved */
 		{ 272 + 12, 0, 4, BP_ERROR_CORRUPT }, { 272 + 12, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* offset */
 		{ 272 + 16, 0, 4, BP_ERROR_CORRUPT }, { 272 + 16, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* bytes */

@@ -100,7 +100,7 @@ FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct r
 	memset(sections, 0, sizeof *sections);
 	assert_int_equal(PAPER_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) }; /* invented: there is no source */
+		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) }; /* invented: there is no source */
 	vector_model_free(model);
 }
 

@@ -226,7 +226,7 @@ FIXTURE void head_with(const char *path, size_t at, uint64_t value, unsigned wid
 	free(record);
 }
 
-FIXTURE void make_record_version(const char *path) { head_with(path, 16, 2, 2, "material"); }
+FIXTURE void make_record_version(const char *path) { head_with(path, 16, 1, 2, "material"); }
 FIXTURE void make_profile(const char *path) { head_with(path, 18, 77, 2, "material"); }
 FIXTURE void make_head_bytes(const char *path) { head_with(path, 8, UINT32_MAX, 4, "material"); }
 FIXTURE void make_extents(const char *path) { head_with(path, 24, 0x040004000400, 6, "material"); }

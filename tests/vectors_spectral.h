@@ -43,7 +43,7 @@ FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, 
 	memset(sections, 0, sizeof *sections);
 	assert_int_equal(SPECTRAL_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) };
+		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) };
 	model_free(model);
 	model_free(decoded);
 	lattice_free(&lattice);
@@ -67,6 +67,8 @@ FIXTURE void vector_spectral(const char *path, struct lattice_dims dims, double 
 }
 
 static void make_spectral(const char *path) { vector_spectral(path, (struct lattice_dims){ 16, 15, 6 }, 1, 1500); }
+/* Enough cells along theta_h and theta_d for weights. */
+static void make_spectral_weights(const char *path) { vector_spectral(path, (struct lattice_dims){ 21, 20, 4 }, 1, 2000); }
 static void make_spectral_least(const char *path) { vector_spectral(path, (struct lattice_dims){ 4, 4, 4 }, 1, 60400); }
 static void make_spectral_bright(const char *path) { vector_spectral(path, (struct lattice_dims){ 4, 5, 6 }, 1e300, 60400); }
 static void make_spectral_dark(const char *path) { vector_spectral(path, (struct lattice_dims){ 4, 5, 6 }, 1e-300, 60400); }

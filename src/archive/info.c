@@ -83,7 +83,7 @@ bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t el
 		return status;
 	for (uint32_t l = 0; l < head.layer_count && l < capacity; l++) {
 		const struct fidelity *figures = &head.layers[l].fidelity;
-		layers[l] = (bp_layer){ head.layers[l].bytes, figures->log_rmse, figures->cube_root_rmse, figures->largest_relative };
+		layers[l] = (bp_layer){ head.layers[l].bytes, figures->log_rmse, figures->cube_root_rmse, figures->largest_relative, figures->seen_log_rmse };
 	}
 	if (count)
 		*count = head.layer_count;

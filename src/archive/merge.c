@@ -10,7 +10,7 @@
 static uint32_t layers_wanted(const struct record_head *head, double max_log_rmse)
 {
 	for (uint32_t n = 0; max_log_rmse > 0 && n < head->layer_count; n++)
-		if (head->layers[n].fidelity.log_rmse <= max_log_rmse)
+		if (head->layers[n].fidelity.seen_log_rmse <= max_log_rmse)
 			return n + 1;
 	return head->layer_count;
 }

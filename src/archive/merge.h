@@ -14,7 +14,7 @@
 
 struct copy_options {
 	const char *output;
-	double max_log_rmse;  /* > 0: keep the fewest layers whose log RMSE is at most this, all where none is; 0: keep all */
+	double max_log_rmse;  /* > 0: keep the fewest layers whose log RMSE of what can be seen is at most this, all where none is; 0: keep all */
 	bool replace;         /* merge: of a name that several inputs have, take the last input's; otherwise that is refused */
 	bool alike;           /* merge: refuse records of other options, profile or codec version than the first one's: they are of no one build */
 	bool (*stop)(void);   /* asked before every record; true: nothing is written, *stopped is set. NULL: never */

@@ -9,7 +9,7 @@
 uint32_t record_layers_for(const struct record_head *head, double max_log_rmse)
 {
 	for (uint32_t n = 0; max_log_rmse > 0 && n < head->layer_count; n++)
-		if (head->layers[n].fidelity.log_rmse <= max_log_rmse)
+		if (head->layers[n].fidelity.seen_log_rmse <= max_log_rmse)
 			return n + 1;
 	return head->layer_count;
 }

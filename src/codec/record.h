@@ -20,7 +20,7 @@ enum { RECORD_BUDGET_MIN = 1000, RECORD_BUDGET_MAX = 4000000 };
 
 /* Every record begins with these bytes. */
 #define RECORD_MAGIC "\x8b" "REC\r\n\x1a\n"
-enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 1 };
+enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 2 };
 
 /* In place of a codec version: no encoder made this record as it is, so no rebuild takes it for what it would make. */
 enum { RECORD_LAYERS_DROPPED = 0 };
@@ -112,7 +112,7 @@ bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_he
 /* Delivers `count` bytes at `offset` from the record's start; offsets in its errors are the caller's to understand. */
 typedef bp_status record_fetch_fn(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error);
 
-/* The fewest layers whose log RMSE is at most this; all where none satisfies it or 0 is asked for. */
+/* The fewest layers whose log RMSE of what can be seen is at most this; all where none satisfies it or 0 is asked for. */
 uint32_t record_layers_for(const struct record_head *head, double max_log_rmse);
 
 /* Checks the head and every section's checksum of a record that is in memory, `count` bytes. */

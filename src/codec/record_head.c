@@ -44,13 +44,12 @@ static bp_status parse_layers(struct byte_reader *in, struct record_head *head, 
 	for (uint32_t l = 0; l < head->layer_count; l++) {
 		struct record_layer *layer = &head->layers[l];
 		uint64_t at = in->at;
-		uint32_t zero;
 		layer->bytes = read_u32(in);
-		zero = read_u32(in);
+		layer->fidelity.seen_log_rmse = (double)read_f32(in);
 		layer->fidelity.log_rmse = read_f64(in);
 		layer->fidelity.cube_root_rmse = read_f64(in);
 		layer->fidelity.largest_relative = read_f64(in);
-		if (zero || !figure_legal(layer->fidelity.log_rmse) || !figure_legal(layer->fidelity.cube_root_rmse) ||
+		if (!figure_legal(layer->fidelity.seen_log_rmse) || !figure_legal(layer->fidelity.log_rmse) || !figure_legal(layer->fidelity.cube_root_rmse) ||
 		    !figure_legal(layer->fidelity.largest_relative))
 			return error_set(error, BP_ERROR_CORRUPT, at, "layer %u: a figure is negative or not a number", l);
 	}

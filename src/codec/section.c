@@ -1,5 +1,6 @@
 #include "section.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,7 +66,7 @@ static void head_write_tables(const struct record_head *head, struct byte_buffer
 	for (uint32_t l = 0; l < head->layer_count; l++) {
 		const struct record_layer *layer = &head->layers[l];
 		write_u32(out, layer->bytes);
-		write_u32(out, 0);
+		write_f32(out, (float)fmin(layer->fidelity.seen_log_rmse, (double)FLT_MAX));
 		write_f64(out, layer->fidelity.log_rmse);
 		write_f64(out, layer->fidelity.cube_root_rmse);
 		write_f64(out, layer->fidelity.largest_relative);

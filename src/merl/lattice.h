@@ -108,6 +108,12 @@ double lattice_horizon_limit(const struct lattice *lattice);
 bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error);
 
 /*
+ * Which cells can be seen: fills seen[cells], 1 where both directions are above the horizon somewhere in the cell. The others
+ * reach a picture only as neighbours in interpolation, by less than a half. Fails only for dims that are not legal.
+ */
+bp_status lattice_seen(struct lattice_dims dims, uint8_t *seen, bp_error *error);
+
+/*
  * The smaller of the two cosines, max(0, min(cos theta_i, cos theta_o)) at the cell's lower corner:
  * fills cosine[theta_d phi_d] for one index of theta_h. Freed with free(); 40 KB. It is the weight of the
  * cube-root figure (model/fidelity.h) as that is defined, in records too; at centres the figure

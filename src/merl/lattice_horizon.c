@@ -110,6 +110,22 @@ bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t 
 	return BP_OK;
 }
 
+bp_status lattice_seen(struct lattice_dims dims, uint8_t *seen, bp_error *error)
+{
+	struct cosines highest;
+	bp_status status = lattice_dims_check(dims, error);
+	if (status != BP_OK)
+		return status;
+	highest_fill(dims, &highest);
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++, seen += dims.phi_d) {
+			const double a = highest.cos_d[j] * highest.cos_h[i], q = highest.sin_d[j] * highest.sin_h[i];
+			for (uint32_t k = 0; k < dims.phi_d; k++)
+				seen[k] = a - q * highest.cos_p[k] > 0;
+		}
+	return BP_OK;
+}
+
 struct corner_cosines {
 	struct lattice_dims dims;
 	struct cosines corner;

@@ -7,9 +7,9 @@
 #include "error.h"
 #include "fidelity_kernels.h"
 
-/* Adds slice i of all tables to their totals. */
-static void slice_add(const struct lattice *truth, const struct expansion *tables, uint32_t count, uint32_t i, const float *cosine,
-                      struct fidelity_sums *total)
+/* Adds the cells `valid` of slice i of all tables to their totals. */
+static void slice_add(const struct lattice *truth, const struct expansion *tables, uint32_t count, uint32_t i, const uint8_t *valid,
+                      const float *cosine, struct fidelity_sums *total)
 {
 	const size_t slice = (size_t)truth->dims.theta_d * truth->dims.phi_d, at = i * slice;
 	struct fidelity_sums sums[LAYERS_MAX];
@@ -20,7 +20,7 @@ static void slice_add(const struct lattice *truth, const struct expansion *table
 	for (int c = 0; c < 3; c++) {
 		for (uint32_t t = 0; t < count; t++)
 			table[t] = (struct fidelity_table){tables[t].rgb[c] + at, tables[t].unit, &sums[t]};
-		fidelity_kernels_get()->fidelity_slice(truth->rgb[c] + at, truth->valid + at, cosine, slice, table, count);
+		fidelity_kernels_get()->fidelity_slice(truth->rgb[c] + at, valid, cosine, slice, table, count);
 	}
 	for (uint32_t t = 0; t < count; t++) {
 		total[t].log_squares += sums[t].log_squares;
@@ -33,8 +33,10 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
                                bp_error *error)
 {
 	const struct lattice_dims dims = truth->dims;
-	struct fidelity_sums total[LAYERS_MAX] = {{0, 0, 0}};
+	struct fidelity_sums total[LAYERS_MAX] = {{0, 0, 0}}, hidden[LAYERS_MAX] = {{0, 0, 0}};
 	struct corner_cosines *cosines = NULL;
+	uint8_t *unseen = NULL;
+	size_t unseen_count = 0;
 
 	if (count > LAYERS_MAX)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: %u tables; %d at most", count, LAYERS_MAX);
@@ -43,25 +45,32 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
 			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: the two tables have different extents");
 	if (!truth->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "fidelity: no valid cell to compare");
-	const size_t slice = (size_t)dims.theta_d * dims.phi_d;
+	const size_t slice = (size_t)dims.theta_d * dims.phi_d, cells = lattice_cells(dims);
 	float *cosine = malloc(slice * sizeof *cosine);
 	bp_status status = cosine ? corner_cosines_create(dims, &cosines, error) : error_memory(error, slice * sizeof *cosine);
+	if (!status)
+		status = (unseen = malloc(cells)) ? lattice_seen(dims, unseen, error) : error_memory(error, cells);
 	if (status)
 		goto out;
+	for (size_t n = 0; n < cells; n++)
+		unseen_count += unseen[n] = truth->valid[n] & !unseen[n];
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
 		corner_cosines_slice(cosines, i, cosine);
-		slice_add(truth, tables, count, i, cosine, total);
+		slice_add(truth, tables, count, i, truth->valid + i * slice, cosine, total);
+		slice_add(truth, tables, count, i, unseen + i * slice, cosine, hidden); /* few: most blocks have none */
 	}
-	const double n = 3.0 * (double)truth->valid_count;
+	const double n = 3.0 * (double)truth->valid_count, n_seen = 3.0 * (double)(truth->valid_count - unseen_count);
 	const double log10_of_2 = 0.30102999566398120;
 	for (uint32_t t = 0; t < count; t++) {
 		out[t].log_rmse = log10_of_2 * sqrt(total[t].log_squares / n);
+		out[t].seen_log_rmse = n_seen > 0 ? log10_of_2 * sqrt(fmax(total[t].log_squares - hidden[t].log_squares, 0) / n_seen) : out[t].log_rmse;
 		out[t].cube_root_rmse = sqrt(total[t].cube_root_squares / n);
 		out[t].largest_relative = total[t].largest_relative < DBL_MAX ? total[t].largest_relative : DBL_MAX;
 	}
 out:
 	free(cosines);
 	free(cosine);
+	free(unseen);
 	return status;
 }
 

@@ -10,6 +10,7 @@
 /* Fidelity of a decoded table against the measured one, over valid cells and the three channels; see fidelity.h. */
 struct fidelity {
 	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) */
+	double seen_log_rmse;    /* the same over the cells that can be seen (lattice_seen) only; log_rmse where there are none */
 	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller cosine at the cell's lower corner */
 	double largest_relative; /* largest |e - b|/(b + 1e-2) */
 };

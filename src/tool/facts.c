@@ -27,6 +27,7 @@ const struct fidelity *head_fidelity(const struct record_head *head)
 static void fidelity_members(struct json *json, const struct fidelity *fidelity)
 {
 	json_number(json, "log_rmse", fidelity->log_rmse);
+	json_number(json, "seen_log_rmse", fidelity->seen_log_rmse);
 	json_number(json, "cube_root_rmse", fidelity->cube_root_rmse);
 	json_number(json, "largest_relative", fidelity->largest_relative);
 }

@@ -10,7 +10,7 @@
 #include "encoding.h"
 #include "codec/profile_codec.h"
 
-enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, FIELDS_VERSION = 2, PLANES_VERSION = 2 };
+enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 + SPECTRAL_WEIGHTS, FIELDS_VERSION = 3, PLANES_VERSION = 2 };
 
 static const struct section_kind KINDS[] = {
 	{ SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION },
@@ -37,6 +37,7 @@ static void fields_write(const struct encoding *e, struct section_list *sections
 	write_f32(out, e->centre[1]);
 	write_f32(out, SPECTRAL_CENTRE_BELOW);
 	write_u32(out, e->planes->planes);
+	write_bytes(out, e->model->weights, SPECTRAL_WEIGHTS);
 }
 
 /* What decoding the sections would give. */
@@ -57,6 +58,7 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	decoded->unit = e->model->unit;
 	memcpy(decoded->base, e->model->base, sizeof decoded->base);
 	memcpy(decoded->rotation, e->model->rotation, sizeof decoded->rotation);
+	memcpy(decoded->weights, e->model->weights, sizeof decoded->weights);
 	decoded->step = e->step;
 	decoded->centre[0] = e->centre[0];
 	decoded->centre[1] = e->centre[1];
@@ -124,6 +126,7 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 	for (int i = 0; i < 3; i++)
 		model->centre[i] = read_f32(&in);
 	model->planes = read_u32(&in);
+	read_bytes(&in, model->weights, SPECTRAL_WEIGHTS);
 	if (!(model->unit >= SPECTRAL_UNIT_LEAST && model->unit <= SPECTRAL_UNIT_MOST))
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the unit is %g, not from %g to %g", model->unit, SPECTRAL_UNIT_LEAST, SPECTRAL_UNIT_MOST);
 	for (int c = 0; c < 3; c++)
@@ -200,7 +203,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 
 const struct profile_codec SPECTRAL_CODEC = {
 	.profile = PROFILE_SPECTRAL,
-	.version = 3,
+	.version = 4,
 	.kinds = KINDS,
 	.kind_count = sizeof KINDS / sizeof *KINDS,
 	.decode = spectral_decode,

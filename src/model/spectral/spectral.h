@@ -14,13 +14,14 @@
  * the table's values that scales as they do, so a table s times as bright gives the same fields and s times the unit.
  *
  * A model that was fitted holds coefficients as they were found; one that was decoded holds levels, a coefficient
- * being about level * step. What lies below the quantiser's step is lost in encoding, where the budget is known.
+ * being about level * step times the factor of its place. What lies below the quantiser's step is lost in encoding, where the budget is known.
  */
 #ifndef MODEL_SPECTRAL_SPECTRAL_H
 #define MODEL_SPECTRAL_SPECTRAL_H
 
 #include "model/fit.h"
 #include "model/robust/robust.h"
+#include "spectral_weights.h"
 #include "spectrum.h"
 
 /* Of the unit, in 1/sr: a normal number with a reciprocal, and the hundredth of any value is one. */
@@ -45,7 +46,8 @@ struct spectral_model {
 	double unit;          /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
 	float base[3];        /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
 	float rotation[3][3]; /* orthonormal */
-	float *coefficient[3]; /* fitted: spectra of the three fields; NULL when decoded */
+	uint8_t weights[SPECTRAL_WEIGHTS]; /* spectral_weights.h */
+	float *coefficient[3]; /* fitted: spectra of the three fields, divided by the weights' factors; NULL when decoded */
 	bool noisy;            /* fitted: noise was found and drawn towards 0 */
 
 	float step;            /* decoded, as all that follows */
@@ -82,10 +84,10 @@ bp_status spectral_denoise(struct lattice_dims dims, float *coefficient, bool *n
 
 /*
  * spectral_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of
- * about so many bytes.
+ * about so many bytes with such weights.
  */
-bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3], double budget_bytes,
-                          int steps, float *const table[3], bp_error *error);
+bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3],
+                          const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3], bp_error *error);
 
 /* spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. */
 bp_status spectral_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], bp_error *error);

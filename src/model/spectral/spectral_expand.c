@@ -26,6 +26,8 @@ bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t la
 	bp_status status = planes ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * cells * sizeof *planes);
 
 	if (!status)
+		status = spectral_weights_apply(model->weights, inverse, error);
+	if (!status)
 		status = spectral_terms_make(model, inverse, layers, &terms, error);
 	for (uint32_t k = 0; !status && k < d.phi_d; k += SPECTRUM_BLOCK) {
 		const struct spectral_block block = {

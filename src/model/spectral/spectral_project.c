@@ -24,6 +24,7 @@ static const double BITS_EACH = 4.3; /* of a record, for each coefficient that i
 struct projection {
 	struct lattice_dims dims;
 	struct spectrum_inverse *inverse;
+	float *factor;   /* of the weights, by row */
 	float *spectrum; /* of one channel, which are much alike */
 	float *plane;
 	struct spectrum_term *term;
@@ -31,22 +32,27 @@ struct projection {
 	uint32_t room; /* terms */
 };
 
-static bp_status projection_create(struct lattice_dims d, uint32_t room, struct projection *out, bp_error *error)
+static bp_status projection_create(struct lattice_dims d, const uint8_t weights[SPECTRAL_WEIGHTS], uint32_t room, struct projection *out,
+                                   bp_error *error)
 {
 	const size_t cells = lattice_cells(d), rows = (size_t)d.theta_h * d.theta_d;
 
 	*out = (struct projection){.dims = d, .room = room};
+	out->factor = malloc(rows * sizeof(float));
 	out->spectrum = memory_alloc(cells * sizeof(float));
 	out->plane = memory_alloc(rows * SPECTRUM_BLOCK * sizeof(float));
 	out->term = malloc(((size_t)room + 1) * sizeof *out->term);
 	out->start = malloc(((size_t)d.phi_d + 1) * sizeof *out->start);
-	if (!out->spectrum || !out->plane || !out->term || !out->start)
+	if (!out->factor || !out->spectrum || !out->plane || !out->term || !out->start)
 		return error_memory(error, cells * sizeof(float));
-	return spectrum_inverse_create(d, &out->inverse, error);
+	spectral_weights_factors(d, weights, out->factor);
+	bp_status status = spectrum_inverse_create(d, &out->inverse, error);
+	return status ? status : spectral_weights_apply(weights, out->inverse, error);
 }
 
 static void projection_free(struct projection *p)
 {
+	free(p->factor);
 	free(p->spectrum);
 	free(p->plane);
 	free(p->term);
@@ -92,18 +98,19 @@ static void channel_project(const struct projection *p, const uint8_t *valid, fl
 	}
 }
 
-bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, const uint8_t *valid, const float base[3], double budget_bytes,
-                          int steps, float *const table[3], bp_error *error)
+bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, const uint8_t *valid, const float base[3],
+                          const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3], bp_error *error)
 {
 	const size_t cells = lattice_cells(d);
 	const double wanted = fmin(budget_bytes * 8 / BITS_EACH / 4, (double)cells); /* of one channel, which are much alike */
 	struct projection p;
-	bp_status status = projection_create(d, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
+	bp_status status = projection_create(d, weights, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
 
 	for (int c = 0; !status && c < 3; c++)
 		for (int s = 0; s < steps; s++) {
 			memcpy(p.spectrum, table[c], cells * sizeof(float));
 			spectrum_forward(spectrum, p.spectrum, base[c]);
+			spectral_weights_divide(d, p.factor, p.spectrum);
 			/* Four times the last threshold at first where there are steps enough. */
 			const float last = size_of_rank(p.spectrum, cells, wanted);
 			const double factor = steps > 1 ? fast_exp2(2.0 * (steps - 1 - s) / (steps - 1)) : 1;

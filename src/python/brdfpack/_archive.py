@@ -23,6 +23,7 @@ class Layer(NamedTuple):
     log_rmse: float
     cube_root_rmse: float
     largest_relative: float
+    seen_log_rmse: float  # log_rmse over the valid cells that do not lie wholly below the horizon
 
 
 class Section(NamedTuple):
@@ -108,7 +109,7 @@ class Entry(NoPickle):
             shape=(info.theta_h, info.theta_d, info.phi_d), head_bytes=info.head_bytes, record_bytes=info.record_bytes,
             record_offset=info.record_offset,
             channels=tuple(Channel(c.diffuse, c.specular, c.rejected, c.iterations, bool(c.converged)) for c in info.channels),
-            layers=tuple(Layer(x.bytes, x.log_rmse, x.cube_root_rmse, x.largest_relative) for x in layers),
+            layers=tuple(Layer(x.bytes, x.log_rmse, x.cube_root_rmse, x.largest_relative, x.seen_log_rmse) for x in layers),
             sections=tuple(Section(s.type, s.codec, s.version, s.layer, s.flags, s.bytes, s.error) for s in sections),
             left_out=info.left_out, effort=info.effort, budget_bytes=info.budget_bytes, max_error=info.max_error,
             source_bytes=info.source_bytes, source_sha256=bytes(ffi.buffer(info.source_sha256)),

@@ -88,8 +88,8 @@ static void material_print(const struct record_head *head)
 	       head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->horizon_limit);
 	for (uint32_t i = 0; i < head->layer_count; i++) {
 		const struct record_layer *layer = &head->layers[i];
-		printf("  layer %-3" PRIu32 "   %8" PRIu32 " bytes so far  log RMSE %.6f  cube-root RMSE %.6f  largest relative error %.4g\n", i,
-		       layer->bytes, layer->fidelity.log_rmse, layer->fidelity.cube_root_rmse, layer->fidelity.largest_relative);
+		printf("  layer %-3" PRIu32 "   %8" PRIu32 " bytes so far  log RMSE %.6f, of what is seen %.6f  cube-root RMSE %.6f  largest relative error %.4g\n", i,
+		       layer->bytes, layer->fidelity.log_rmse, layer->fidelity.seen_log_rmse, layer->fidelity.cube_root_rmse, layer->fidelity.largest_relative);
 	}
 	for (uint32_t i = 0; i < head->section_count; i++) {
 		const struct record_section *section = &head->sections[i];

@@ -49,7 +49,8 @@ static bp_status figures_confirm(const struct record_head *head, uint32_t layer,
 {
 	const struct fidelity *recorded = &head->layers[layer].fidelity;
 	if (figure_alike(recorded->log_rmse, measured->log_rmse) && figure_alike(recorded->cube_root_rmse, measured->cube_root_rmse) &&
-	    figure_alike(recorded->largest_relative, measured->largest_relative))
+	    figure_alike(recorded->largest_relative, measured->largest_relative) &&
+	    fabs(recorded->seen_log_rmse - measured->seen_log_rmse) <= 1e-6 * measured->seen_log_rmse /* a float in the record */)
 		return BP_OK;
 	return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET,
 	                 "layer %u: the record tells errors of %.9g, %.9g, %.9g (log, cube-root, largest relative); measured: %.9g, %.9g, %.9g",

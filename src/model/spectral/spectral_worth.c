@@ -1,0 +1,153 @@
+/* spectral_worth.c: what errors are worth, from what was measured: the fit's part of spectral_weights.h. */
+#include "spectral_weights.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "model/math/fast_math.h"
+
+enum { EDGE = SPECTRAL_WEIGHTS_EDGE, LEAST_CELLS = 2 * EDGE, PER_OCTAVE = 8, BINS = 128 * PER_OCTAVE };
+
+/* Figures that were found by trial: VARIANTS.md, "What errors are worth". */
+static const double PICTURE = 0.95;  /* share of the picture in an error's worth; the rest is the error of the logarithm itself */
+static const double STEEPNESS = 0.8; /* 1: least for the picture; less: safer for uses that are not this one */
+static const double LEAST = 0.05;    /* of the mean worth, even where nothing is seen */
+static const double EXPOSURE = 7;    /* white, where the 90 % point of value times cosine is 1: that of a sphere, within a half */
+static const double AMBIENT = 0.3;   /* of white: what else a pixel holds */
+static const struct {
+	double radiance, count;
+} LIGHTS[] = {{0.03, 150}, {0.15, 24}, {1, 3}, {3, 1}}; /* those of a sky, weak and strong lamps, where white is 1 */
+enum { LIGHT_COUNT = sizeof LIGHTS / sizeof *LIGHTS };
+
+/* Cosines and sines of the cells' centres. */
+struct centres {
+	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX], cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX], cos_p[LATTICE_EXTENT_MAX];
+};
+
+static void centres_fill(struct lattice_dims d, struct centres *out)
+{
+	double sine;
+	for (uint32_t i = 0; i < d.theta_h; i++) {
+		const double root = (i + 0.5) / d.theta_h;
+		quarter_cos_sin(root * root, &out->cos_h[i], &out->sin_h[i]);
+	}
+	for (uint32_t j = 0; j < d.theta_d; j++)
+		quarter_cos_sin((j + 0.5) / d.theta_d, &out->cos_d[j], &out->sin_d[j]);
+	for (uint32_t k = 0; k < d.phi_d; k++) {
+		const double t = (2 * k + 1.0) / d.phi_d; /* |cos| is symmetric about pi/2 */
+		quarter_cos_sin(t <= 1 ? t : 2 - t, &out->cos_p[k], &sine);
+	}
+}
+
+/* What is gathered of a region. */
+struct region {
+	double picture; /* sum of worths */
+	double seen, cells;
+};
+
+struct survey {
+	const struct lattice *lattice;
+	const struct centres *centres;
+	double factor;     /* of values */
+	double *bins;      /* first pass: shares of directions by log2 of value times cosine, BINS from 2^-64 on */
+	struct region *regions; /* second pass: values are in units of white */
+};
+
+/* The worth of a relative error where a direction of this cosine sends light into one of cosine `other`: the square of what it does after the sRGB curve. */
+static double worth(double value, double cosine, double other)
+{
+	double sum = 0;
+	for (int l = 0; l < LIGHT_COUNT; l++) {
+		/* A pixel x + AMBIENT, of which x is this light's; the curve is a power of 1/2.4. Above white there is nothing to see. */
+		const double x = value * cosine * LIGHTS[l].radiance, share = x + 0.02 * LIGHTS[l].radiance;
+		double slope = fast_exp2(2 * (1 / 2.4 - 1) * fast_log2(x + AMBIENT));
+		if (x > 1)
+			slope /= x * x;
+		sum += LIGHTS[l].count * slope * share * share;
+	}
+	return sum * other;
+}
+
+/* Every 15th cell of a row, another phi_d in each; all of a short one. */
+static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
+{
+	const struct lattice *lattice = s->lattice;
+	const struct lattice_dims d = lattice->dims;
+	const struct centres *c = s->centres;
+	const uint32_t every = d.phi_d < 90 ? 1 : 15;
+	const size_t row = lattice_index(d, i, j, 0);
+	/* Pairs of directions in a cell, up to a factor: d omega_h d omega_i = sin theta_h d theta_h 4 cos theta_d sin theta_d d theta_d d phi_d. */
+	const double directions = (i + 0.5) / d.theta_h * c->sin_h[i] * 2 * c->sin_d[j] * c->cos_d[j];
+	struct region *region = s->regions ? &s->regions[i * EDGE / d.theta_h * EDGE + j * EDGE / d.theta_d] : NULL;
+
+	for (uint32_t k = (3 * i + 5 * j) % every; k < d.phi_d; k += every) {
+		const double a = c->cos_d[j] * c->cos_h[i], b = c->sin_d[j] * c->sin_h[i] * c->cos_p[k];
+		if (region)
+			region->cells++;
+		if (!lattice->valid[row + k] || a - b <= 0)
+			continue;
+		const double cosine[2] = {a - b, a + b};
+		const double value = (lattice->rgb[0][row + k] * s->factor + lattice->rgb[1][row + k] * s->factor + lattice->rgb[2][row + k] * s->factor) / 3;
+		for (int n = 0; n < 2; n++) {
+			if (region) {
+				region->picture += directions * worth(value, cosine[n], cosine[1 - n]);
+				continue;
+			}
+			const double octave = fast_log2(fmin(fmax(value * cosine[n], 0x1p-63), 0x1p63));
+			s->bins[(int)((octave + 64) * PER_OCTAVE)] += directions * cosine[1 - n];
+		}
+		if (region)
+			region->seen++;
+	}
+}
+
+static void table_survey(const struct survey *s)
+{
+	for (uint32_t i = 0; i < s->lattice->dims.theta_h; i++)
+		for (uint32_t j = 0; j < s->lattice->dims.theta_d; j++)
+			row_survey(s, i, j);
+}
+
+/* White, in units: where a picture of the material is exposed for. */
+static double white_of(const double bins[BINS])
+{
+	double sum = 0, below = 0;
+	int n = 0;
+
+	for (int b = 0; b < BINS; b++)
+		sum += bins[b];
+	while (n + 1 < BINS && below + bins[n] <= 0.9 * sum)
+		below += bins[n++];
+	return EXPOSURE * fast_exp2((double)n / PER_OCTAVE - 64);
+}
+
+void spectral_weights_find(const struct lattice *lattice, double unit, uint8_t weights[SPECTRAL_WEIGHTS])
+{
+	const struct lattice_dims d = lattice->dims;
+	double bins[BINS] = {0}, steps[SPECTRAL_WEIGHTS], finest = INFINITY, picture = 0, cells = 0;
+	struct region regions[SPECTRAL_WEIGHTS] = {0};
+	struct centres centres;
+	struct survey survey = {.lattice = lattice, .centres = &centres, .factor = 1 / unit, .bins = bins};
+
+	memset(weights, 0, SPECTRAL_WEIGHTS);
+	if (d.theta_h < LEAST_CELLS || d.theta_d < LEAST_CELLS)
+		return;
+	centres_fill(d, &centres);
+	table_survey(&survey);
+	survey.factor /= white_of(bins);
+	survey.regions = regions;
+	table_survey(&survey);
+	for (int r = 0; r < SPECTRAL_WEIGHTS; r++) {
+		picture += regions[r].picture;
+		cells += regions[r].cells;
+	}
+	if (!(picture > 0))
+		return;
+	for (int r = 0; r < SPECTRAL_WEIGHTS; r++) {
+		const double share = PICTURE * regions[r].picture / picture * cells + (1 - PICTURE) * regions[r].seen;
+		steps[r] = -0.5 * STEEPNESS * fast_log2(share / regions[r].cells + LEAST);
+		finest = fmin(finest, steps[r]);
+	}
+	for (int r = 0; r < SPECTRAL_WEIGHTS; r++)
+		weights[r] = (uint8_t)fmin(16 * (steps[r] - finest) + 0.5, 255);
+}
