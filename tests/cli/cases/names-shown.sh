@@ -3,7 +3,7 @@ fixture alpha
 for n in $'a\xe2\x80\xaeb' $'zero\xe2\x80\x8bwidth' '金属' 'plain'; do cp alpha.binary "$n.binary"; done
 rm alpha.binary
 build -o out.bpk .
-brdfpack list out.bpk | cut -c1-40 | sed 's/ *[0-9]* *spectral.*//' | cat -v
+brdfpack list out.bpk | sed 's/ *[0-9]* *spectral.*//' | cat -v
 brdfpack list --json out.bpk | python3 -c 'import json,sys
 print(ascii(sorted(json.loads(l)["name"] for l in sys.stdin if "\"name\"" in l)))'
 brdfpack list out.bpk | python3 -c 'import sys,unicodedata
