@@ -13,7 +13,7 @@
 #     mitsuba   the plugin for Mitsuba 3, which pip fetches (in continuous integration, or when named; skipped where pip cannot)
 #     debian    Debian packages of the tree, and lintian (in continuous integration, or when named)
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
-#     clang     builds everything by clang with warnings as errors
+#     clang     builds everything by clang with warnings as errors; and the libraries by both with -flto
 #     valgrind  a small build, list, extract and verify under valgrind
 #     pinned    bytes, errors and decoded values of the demo materials against tests/pinned.tsv
 #     stress    adversarial materials through every profile (the short form of `make stress`)
@@ -152,7 +152,10 @@ job_asan() {
 	export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1
 	build asan && unit_tests asan && cli_tests asan
 }
-job_clang() { build clang; }
+job_clang() {
+	build clang
+	check "libraries by -flto" "$logs/lto.log" tests/lto.sh build/lto
+}
 job_install() { build test && check "installed library" "$logs/install.log" tests/install.sh build/test "${test_flags[@]}"; }
 job_portable() { build test && check "the reading half alone" "$logs/portable.log" tests/portable.sh build/test; }
 job_mitsuba() {
