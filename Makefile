@@ -70,6 +70,7 @@ help:
 	@echo "  stress-builds  do decoded values depend on compiler, level or AVX2?"
 	@echo "  faults       damaged archives, killed and starved builds, many loads, threads (FAULTS_FLAGS=--long: more of each)"
 	@echo "  pinned       bytes, errors and values of the demo materials against tests/pinned.tsv"
+	@echo "  viewer       the page's viewer, in $(BUILD)/viewer: the reader as WebAssembly (needs emscripten)"
 	@echo "  fuzz         coverage-guided fuzzing by clang, FUZZ_SECONDS=$(FUZZ_SECONDS) for each target; what is found is kept in FUZZ_CORPUS"
 	@echo "  install      into DESTDIR/PREFIX: tool, libraries, header, files for pkg-config and CMake, man pages, completions"
 	@echo "  uninstall    removes what install wrote"
@@ -110,6 +111,14 @@ $(BUILD)/demo_table.inc: manifests/demo.tsv src/merl/demo_table.awk
 	$(Q)awk -f src/merl/demo_table.awk manifests/demo.tsv > $@.part && mv $@.part $@
 $(BUILD)/src/merl/demo.o: $(BUILD)/demo_table.inc
 $(BUILD)/src/merl/demo.o: ALL_CFLAGS += -I$(BUILD)
+
+# How the page of `report` looks and what its script does, as C text.
+$(BUILD)/page_assets.inc: src/tool/report_page/page.css src/tool/report_page/page.js src/tool/report_page/text_to_c.awk
+	@mkdir -p $(@D)
+	$(call SAY,AWK   $@)
+	$(Q)for part in css js; do LC_ALL=C awk -v name=PAGE_$$(echo $$part | tr a-z A-Z) -f src/tool/report_page/text_to_c.awk src/tool/report_page/page.$$part || exit 1; done > $@.part && mv $@.part $@
+$(BUILD)/src/tool/report_page/page_sections.o: $(BUILD)/page_assets.inc
+$(BUILD)/src/tool/report_page/page_sections.o: ALL_CFLAGS += -I$(BUILD)
 
 # With internal symbols, for the tool and the tests.
 $(BUILD)/internal.a: $(LIBRARY_O)
@@ -162,15 +171,19 @@ install: all $(BUILD)/brdfpack.pc $(addprefix $(BUILD)/,$(CMAKE_FILES))
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	install -m 644 $(BUILD)/brdfpack.pc $(DESTDIR)$(LIBDIR)/pkgconfig/
+	[ ! -f $(BUILD)/viewer/viewer.html ] || { install -d $(DESTDIR)$(PREFIX)/share/brdfpack && install -m 644 $(BUILD)/viewer/viewer.html $(BUILD)/viewer/index.html $(DESTDIR)$(PREFIX)/share/brdfpack/; }
 	install -m 644 src/tool/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man1/
 	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
 
 uninstall:
+	rm -f $(SHARE)/brdfpack/viewer.html $(SHARE)/brdfpack/index.html
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/cmake/brdfpack/,$(CMAKE_FILES)) $(SHARE)/bash-completion/completions/brdfpack
 	rm -f $(SHARE)/zsh/site-functions/_brdfpack $(SHARE)/fish/vendor_completions.d/brdfpack.fish
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/libbrdfpack_reader.a
 	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man3/libbrdfpack.3
+
+include src/viewer/viewer.mk
 
 clean:
 	rm -rf $(BUILD)

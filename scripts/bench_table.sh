@@ -1,5 +1,5 @@
 #!/bin/sh
-# bench_table.sh TABLE.tsv [BUDGET]: the README's table, as Markdown: one row per method at BUDGET bytes (60400) or at the
+# bench_table.sh TABLE.tsv [BUDGET]: the table of methods in RESULTS.md, as Markdown: one row per method at BUDGET bytes (60400) or at the
 # method's own size, the sphere's PSNR under the key lights per material, and medians. Of an analytic model by two objectives the one with
 # the better mean PSNR is named. Under it the figures that the
 # paper prints for its own method and its rivals; then, if the run had any, the means for each effort (means, because

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, and nothing that is already there.
 #
-#     scripts/setup.sh [build|test|slow|slurm|arm64|mitsuba|debian|bench]...      default: build
+#     scripts/setup.sh [build|test|slow|slurm|arm64|mitsuba|debian|bench|viewer]...      default: build
 #
 #     build  what the tool and the library need
 #     test   what the unit tests (also those of the benchmark) and command-line tests need besides
@@ -11,6 +11,7 @@
 #     mitsuba  what the job with Mitsuba 3 needs besides
 #     debian  what makes and checks the Debian packages
 #     bench  what the benchmarks and their plots need besides
+#     viewer what the page's viewer is built with, and the browser that tests it
 #
 # Needs root or sudo only when something is missing; without either it names the packages and stops.
 set -euo pipefail
@@ -25,6 +26,7 @@ arm64="gcc-12-aarch64-linux-gnu qemu-user:qemu-aarch64 libc6-dev=arm64 zlib1g-de
 mitsuba="libllvm19"
 debian="dpkg-dev debhelper lintian"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
+viewer="emscripten:emcc nodejs:node chromium:chromium python3:python3"
 
 wanted=""
 for group in "${@:-build}"; do
@@ -37,8 +39,9 @@ for group in "${@:-build}"; do
 	mitsuba) wanted+=" $mitsuba" ;;
 	debian) wanted+=" $debian" ;;
 	bench) wanted+=" $bench" ;;
+	viewer) wanted+=" $viewer" ;;
 	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, mitsuba, debian, bench" >&2
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, mitsuba, debian, bench, viewer" >&2
 		exit 2
 		;;
 	esac

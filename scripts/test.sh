@@ -21,6 +21,7 @@
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
 #     slurm     shards as an array job on Slurm, on this machine alone (in continuous integration, or when named)
 #     arm64     unit tests on ARM64, cross-compiled and run under qemu (in continuous integration, or when named)
+#     viewer    the report and its viewer: the WebAssembly reader in Node, the page in Chromium (installs these, or says that it was skipped)
 #     fuzz      each fuzz target for some seconds
 #
 # Without a JOB: all of them, but for what is said above. First everything they need is built, then the jobs run, as many at once as there are
@@ -29,7 +30,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
-all_jobs="asan faults fuzz python stress unit pinned package cli bench install portable valgrind clang house"
+all_jobs="asan faults fuzz viewer python stress unit pinned package cli bench install portable valgrind clang house"
 on_request="slurm arm64 mitsuba debian"
 logs=build/logs
 passed=0
@@ -192,13 +193,22 @@ job_arm64() {
 	scripts/setup.sh arm64 >"$logs/setup-arm64.log" 2>&1 || true
 	NATIVE=build/test/brdfpack check "unit tests on ARM64" "$logs/arm64.log" tests/arm64.sh build/arm64
 }
+job_viewer() {
+	build test || return
+	if [ -f "$logs/make-viewer.code" ]; then build viewer || return; fi
+	check "report and viewer" "$logs/viewer.log" tests/viewer.sh build/test
+}
 job_fuzz() { check "fuzz" "$logs/fuzz.log" make -s "${test_build[@]}" FUZZ_SECONDS=12 fuzz; }
 
 test_flags=(CFLAGS="-O3 -g -Werror" TEST_HOOKS=1)
 test_build=(BUILD=build/test "${test_flags[@]}" FAULTS_ASAN=build/asan)
 start=$SECONDS
-if wanted unit cli install portable package mitsuba python valgrind stress faults pinned bench slurm arm64; then prepare test "${test_build[@]}" all tests; fi
+if wanted unit cli install portable package mitsuba python valgrind stress faults pinned bench slurm arm64 viewer; then prepare test "${test_build[@]}" all tests; fi
 if wanted bench; then prepare bench "${test_build[@]}" build/test/bench/brdfpack-bench; fi
+if wanted viewer; then
+	scripts/setup.sh viewer >"$logs/setup-viewer.log" 2>&1 || true
+	if command -v emcc >/dev/null; then prepare viewer "${test_build[@]}" viewer; fi
+fi
 if wanted pinned; then prepare pinned "${test_build[@]}" build/test/tests/pinned; fi
 if wanted stress; then prepare stress "${test_build[@]}" build/test/tests/stress; fi
 # no -Werror: what the sanitizers insert makes gcc warn of things that are not there

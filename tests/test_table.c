@@ -360,11 +360,55 @@ static void forms_and_channels_that_do_not_exist_are_refused(void **user)
 	expansion_free(&e);
 }
 
+/* The layout is enough to look a value up by hand, as a shader does: at a centre, where interpolation takes one cell alone. */
+static void the_layout_of_a_compact_table_is_enough_to_look_a_value_up(void **user)
+{
+	(void)user;
+	const struct lattice_dims dims = {10, 7, 40};
+	struct expansion e = smooth_material(dims, 1);
+	struct table *table, *expanded;
+	struct table_layout layout;
+	assert_int_equal(table_build(&e, TABLE_COMPACT, 3, &table, NULL), BP_OK);
+	assert_int_equal(table_build(&e, TABLE_EXPANDED, 3, &expanded, NULL), BP_OK);
+	assert_false(table_layout(expanded, &layout));
+	assert_true(table_layout(table, &layout));
+	assert_memory_equal(&layout.dims, &dims, sizeof dims);
+	assert_true(layout.first == 0.5f);
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++)
+			for (uint32_t k = 0; k < dims.phi_d; k++) {
+				const uint32_t number = k / layout.width, in = k % layout.width, later = in >= layout.half;
+				const size_t offset = (size_t)i * layout.slice + (size_t)(j / 2) * layout.row + 32 * (2 * number + j % 2);
+				assert_true(offset + 32 <= layout.bytes);
+				const uint8_t *block = layout.blocks + offset, *share = block + 23 + 3 * later;
+				uint32_t head, code[2];
+				memcpy(&head, block, 4);
+				for (int n = 0; n < 2; n++)
+					code[n] = share[3 * n] | (uint32_t)share[3 * n + 1] << 8 | (uint32_t)share[3 * n + 2] << 16;
+				union {
+					uint32_t bits;
+					float value;
+				} base = {(head & 0xffff) << 14}, step = {head >> 16 << 14};
+				const double root = (double)base.value + (double)step.value * block[4 + in], mean = root * root * root * root;
+				const double to = (double)(in - later * layout.half) / layout.half;
+				const double red = mean * ((1 - to) * (code[0] & 4095) + to * (code[1] & 4095)), blue = mean * ((1 - to) * (code[0] >> 12) + to * (code[1] >> 12));
+				for (int c = 0; c < 3; c++) {
+					const double found = red * (double)layout.mix[0][c] + blue * (double)layout.mix[1][c] + mean * (double)layout.mix[2][c];
+					const double expected = (double)e.rgb[c][lattice_index(dims, i, j, k)];
+					assert_true(fabs(found - expected) < 0.03 * expected + 1e-4);
+				}
+			}
+	table_free(table);
+	table_free(expanded);
+	expansion_free(&e);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_expanded_form_keeps_every_value_to_2_to_the_minus_11),
 		cmocka_unit_test(the_compact_form_keeps_a_smooth_material_to_half_a_percent),
+		cmocka_unit_test(the_layout_of_a_compact_table_is_enough_to_look_a_value_up),
 		cmocka_unit_test(the_centre_of_a_cell_has_its_value_and_before_the_first_and_beyond_the_last_it_stays),
 		cmocka_unit_test(a_channel_that_is_next_to_nothing_leaves_the_others_alone),
 		cmocka_unit_test(tables_stay_within_their_memory),

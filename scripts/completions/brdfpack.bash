@@ -6,7 +6,7 @@ _brdfpack() {
 		choices="help --help --version $("${COMP_WORDS[0]}" help 2>/dev/null | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p')"
 	elif [[ $word == -* ]]; then
 		choices=$("${COMP_WORDS[0]}" "$command" --help 2>/dev/null | sed -n 's/^ *\(-[a-zA-Z], \)\{0,1\}\(--[a-z-]*\).*/\1\2/p' | tr ',' ' ')
-	elif [[ " list extract render show subset " == *" $command "* ]]; then
+	elif [[ " list extract render report show subset " == *" $command "* ]]; then
 		for other in "${COMP_WORDS[@]:2:COMP_CWORD-2}"; do
 			[[ $other != *.bpk ]] || choices=$("${COMP_WORDS[0]}" list --json "$other" 2>/dev/null | sed -n 's/^{"name": "\([^"\\]*\)".*/\1/p')
 		done

@@ -363,3 +363,13 @@ void source_list_free(struct source_list *list)
 	source_names_free(list->names);
 	*list = (struct source_list){0};
 }
+
+static int item_name_compare(const void *name, const void *item)
+{
+	return strcmp(name, ((const struct source_item *)item)->name);
+}
+
+const struct source_item *source_list_find(const struct source_list *list, const char *name)
+{
+	return list->item_count ? bsearch(name, list->items, list->item_count, sizeof *list->items, item_name_compare) : NULL;
+}

@@ -72,6 +72,9 @@ bp_status source_scan(const char *const *inputs, size_t count, const struct sour
                       bp_error *error);
 void source_list_free(struct source_list *list);
 
+/* The item of that name, or NULL. */
+const struct source_item *source_list_find(const struct source_list *list, const char *name);
+
 /*
  * The next wanted material of a stream that the caller opened (CONTAINER_SEQUENTIAL): *out belongs
  * to the caller (source_item_clear); read it with container_read. *more = false at the end.

@@ -4,32 +4,15 @@
 #include <inttypes.h>
 #include <math.h>
 
-/* The length of the well-formed UTF-8 sequence at text (Unicode 15, table 3-7), or 0. */
-static int utf8_length(const unsigned char *text)
-{
-	unsigned char a = text[0], b;
-	if (a < 0x80)
-		return 1;
-	int length = a >= 0xc2 && a <= 0xdf ? 2 : (a & 0xf0) == 0xe0 ? 3 : a >= 0xf0 && a <= 0xf4 ? 4 : 0;
-	if (!length)
-		return 0;
-	b = text[1];
-	unsigned least = a == 0xe0 ? 0xa0 : a == 0xf0 ? 0x90 : 0x80;
-	unsigned most = a == 0xed ? 0x9f : a == 0xf4 ? 0x8f : 0xbf;
-	if (b < least || b > most)
-		return 0;
-	for (int i = 2; i < length; i++)
-		if ((text[i] & 0xc0) != 0x80) /* also ends at the NUL */
-			return 0;
-	return length;
-}
+#include "name.h"
 
 static void text_print(FILE *out, const char *string)
 {
 	const unsigned char *text = (const unsigned char *)string;
 	putc('"', out);
 	while (*text) {
-		int length = utf8_length(text);
+		uint32_t code;
+		size_t length = name_character(text, 4, &code);
 		if (!length) {
 			fputs("\\ufffd", out);
 			length = 1;
@@ -38,7 +21,7 @@ static void text_print(FILE *out, const char *string)
 		} else if (*text < 0x20 || *text == 0x7f) {
 			fprintf(out, "\\u%04x", *text);
 		} else {
-			fwrite(text, 1, (size_t)length, out);
+			fwrite(text, 1, length, out);
 		}
 		text += length;
 	}

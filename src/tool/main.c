@@ -29,7 +29,8 @@
 	X(synth)    \
 	X(render)   \
 	X(compare)  \
-	X(show)
+	X(show)     \
+	X(report)
 
 #define DECLARE(name) extern const struct command command_##name;
 COMMANDS(DECLARE)

@@ -35,11 +35,14 @@ static bool is_ours(const char *path, enum output_kind kind)
 		return false;
 	if (kind == OUTPUT_KIND_PICTURE)
 		return picture_is_ours(head, (size_t)got);
+	if (kind == OUTPUT_KIND_PAGE)
+		return (size_t)got >= sizeof PAGE_MARK - 1 && memcmp(head, PAGE_MARK, sizeof PAGE_MARK - 1) == 0;
 	return got >= ARCHIVE_MAGIC_BYTES && memcmp(head, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES) == 0;
 }
 
 bp_status output_check_path(const char *path, enum output_kind kind, bool force, const char *const *inputs, size_t count, bp_error *error)
 {
+	static const char *const MADE[] = {"archive", "picture that brdfpack drew", "page that brdfpack made"};
 	struct output_file file;
 	struct stat about;
 	for (size_t n = 0; n < count && !force; n++)
@@ -52,7 +55,7 @@ bp_status output_check_path(const char *path, enum output_kind kind, bool force,
 	output_file_discard(&file);
 	if (!force && stat(path, &about) == 0 && !is_ours(path, kind))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: is there already, and is no %s; give another output, or --force to replace it",
-		                 path, kind == OUTPUT_KIND_ARCHIVE ? "archive" : "picture that brdfpack drew");
+		                 path, MADE[kind]);
 	return BP_OK;
 }
 

@@ -13,7 +13,10 @@
 
 #include "brdfpack.h"
 
-enum output_kind { OUTPUT_KIND_ARCHIVE, OUTPUT_KIND_PICTURE };
+enum output_kind { OUTPUT_KIND_ARCHIVE, OUTPUT_KIND_PICTURE, OUTPUT_KIND_PAGE };
+
+/* What a page of `report` begins with. */
+#define PAGE_MARK "<!doctype html>\n<!-- made by brdfpack -->\n"
 
 /* True when the path may be written; says why not. inputs[count] are the paths that are read; NULL among them stands for none. */
 bool output_check(const char *path, enum output_kind kind, bool force, const char *const *inputs, size_t count);

@@ -195,6 +195,26 @@ size_t table_bytes(const struct table *table)
 	return sizeof *table + table->store_bytes;
 }
 
+bool table_layout(const struct table *table, struct table_layout *out)
+{
+	if (table->form != TABLE_COMPACT || table->channels != 3)
+		return false;
+	*out = (struct table_layout){
+		.blocks = table->store,
+		.bytes = (size_t)table->dims.theta_h * table->slice,
+		.dims = table->dims,
+		.row = table->row,
+		.slice = table->slice,
+		.width = table->width,
+		.half = table->half,
+		.first = 1 - table->shift[0],
+	};
+	for (int n = 0; n < 3; n++)
+		for (int c = 0; c < 3; c++)
+			out->mix[n][c] = table->mix[n][c];
+	return true;
+}
+
 void table_evaluate(const struct table *table, const float wi[3], const float wo[3], float rgb[3])
 {
 	table->kernels.evaluate(table, wi, wo, rgb);

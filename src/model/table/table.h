@@ -40,6 +40,19 @@ bp_status table_build_model(const struct model *model, bool half, enum table_for
 void table_free(struct table *table); /* NULL is allowed */
 size_t table_bytes(const struct table *table);
 
+/* How a compact table of three channels lies in memory (compact.h), for who looks values up elsewhere, as on a graphics processor. */
+struct table_layout {
+	const uint8_t *blocks; /* inside the table */
+	size_t bytes;
+	struct lattice_dims dims;
+	uint32_t row, slice;   /* bytes from one pair of theta_d to the next, from one theta_h to the next */
+	uint32_t width, half;  /* cells of a block; cells between two share codes */
+	float first;           /* where the first value stands, in cells: 1/2, or 1/4 where the table has every second value */
+	float mix[3][3];       /* what brings sums of red codes, of blue codes and of means to R, G, B in 1/sr */
+};
+/* False for tables of another form. */
+bool table_layout(const struct table *table, struct table_layout *out);
+
 /*
  * The value for one pair of directions in 1/sr, finite and >= 0 in each channel.
  * 0 where either direction is below or on the horizon, is zero, infinite or NaN; other lengths than 1 are normalised.

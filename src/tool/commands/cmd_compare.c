@@ -87,18 +87,9 @@ static bp_status sources_find(struct compare *compare, bp_error *error)
 		report_warning(compare->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
 	for (size_t n = 0; n < compare->count; n++) {
 		struct compare_item *item = &compare->items[n];
-		size_t low = 0, high = compare->sources.item_count;
-		while (low < high) {
-			size_t middle = (low + high) / 2;
-			if (strcmp(compare->sources.items[middle].name, item->entry.name) < 0)
-				low = middle + 1;
-			else
-				high = middle;
-		}
-		if (low < compare->sources.item_count && !strcmp(compare->sources.items[low].name, item->entry.name)) {
-			item->source = &compare->sources.items[low];
+		item->source = source_list_find(&compare->sources, item->entry.name);
+		if (item->source)
 			continue;
-		}
 		bp_error missing;
 		error_set(&missing, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s holds no measured file of that name", compare->folder);
 		item_fail(compare, item, &missing);

@@ -1,0 +1,336 @@
+#include "page.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "error.h"
+#include "memory_stream.h"
+#include "output_file.h"
+#include "page_html.h"
+#include "page_sections.h"
+#include "page_work.h"
+#include "tool/interrupt.h"
+#include "tool/progress.h"
+#include "tool/report.h"
+
+/* A page of 512 pixels would be ten times as large and show nothing more. */
+enum { SIZE_DETAILS = SPHERE_SIZE, SIZE_SHEET = 40, EMBED_BYTES_MAX = 512 << 20, PROBLEMS_MAX = 1000 };
+
+/* The materials of the page while it is made. */
+struct making {
+	struct page page;
+	struct page_item *items;
+	struct source_list sources;
+	struct page_job job;
+};
+
+static bool name_wanted(void *user, const char *name)
+{
+	uint64_t index;
+	return bp_archive_find(((const struct making *)user)->page.selection->archive, name, &index, NULL) == BP_OK;
+}
+
+static void notice_show(void *user, enum source_notice kind, const char *path, const char *reason)
+{
+	(void)user, (void)kind;
+	report_warning(path, NULL, "%s", reason);
+}
+
+static bp_status items_read(struct making *making, bp_error *error)
+{
+	struct page *page = &making->page;
+	page->count = (size_t)page->selection->count;
+	making->items = calloc(page->count + 1, sizeof *making->items);
+	page->outcomes = calloc(page->count + 1, sizeof *page->outcomes);
+	page->items = making->items;
+	if (!making->items || !page->outcomes)
+		return error_memory(error, page->count * sizeof *making->items);
+	for (size_t n = 0; n < page->count; n++)
+		if (selection_entry(page->selection, n, &making->items[n].entry, error) != BP_OK) { /* the index is damaged: those before are shown */
+			report_error(page->selection->path, NULL, error);
+			page->selection->incomplete = true;
+			page->count = n;
+		}
+	return BP_OK;
+}
+
+static bp_status sources_find(struct making *making, bp_error *error)
+{
+	const struct source_options options = {.notice = notice_show, .wanted = name_wanted, .user = making};
+	const char *folder = making->page.options->measured;
+	if (!folder)
+		return BP_OK;
+	bp_status status = source_scan(&folder, 1, &options, &making->sources, error);
+	for (size_t n = 0; status == BP_OK && n < making->page.count; n++)
+		making->items[n].source = source_list_find(&making->sources, making->items[n].entry.name);
+	for (size_t s = 0; status == BP_OK && s < making->sources.stream_count; s++)
+		report_warning(making->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
+	return status;
+}
+
+static int problem_note(void *user, const bp_problem *problem)
+{
+	struct page *page = user;
+	char text[1024];
+	FILE *out = memory_stream_open(&page->verify);
+	if (!out)
+		return 1;
+	error_describe(&problem->error, text, sizeof text);
+	fputs("<li>", out);
+	if (problem->material) {
+		html_name(out, problem->material);
+		fputs(": ", out);
+	}
+	html_text(out, text);
+	fputs("</li>\n", out);
+	fclose(out);
+	return ++page->problem_count >= PROBLEMS_MAX;
+}
+
+/* A file, whole; `most` bytes at most. */
+static bp_status file_read(const char *path, size_t most, char **out, size_t *out_bytes, bp_error *error)
+{
+	struct stat facts;
+	FILE *file = fopen(path, "rb");
+	if (!file || fstat(fileno(file), &facts) != 0) {
+		error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot read: %s", path, strerror(errno));
+		if (file)
+			fclose(file);
+		return BP_ERROR_IO;
+	}
+	size_t bytes = (size_t)facts.st_size;
+	char *text = bytes <= most ? malloc(bytes + 1) : NULL;
+	bp_status status = BP_OK;
+	if (bytes > most)
+		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: %zu bytes do not fit into a page; serve it beside the page instead", path, bytes);
+	else if (!text)
+		status = error_memory(error, bytes);
+	else if (fread(text, 1, bytes, file) != bytes)
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot read all of it", path);
+	fclose(file);
+	if (status != BP_OK) {
+		free(text);
+		return status;
+	}
+	*out = text;
+	*out_bytes = bytes;
+	return BP_OK;
+}
+
+/* The viewer's part of the page, as `make viewer` leaves it beside the tool and `make install` under share; none is no error. */
+static void viewer_find(struct page *page)
+{
+	static const char *const PLACES[] = {"viewer/viewer.html", "../share/brdfpack/viewer.html"};
+	char self[4096], path[4200];
+	const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+	if (length <= 0)
+		return;
+	self[length] = '\0';
+	const char *folder = dirname(self);
+	for (size_t n = 0; !page->viewer && n < sizeof PLACES / sizeof *PLACES; n++) {
+		snprintf(path, sizeof path, "%s/%s", folder, PLACES[n]);
+		if (access(path, R_OK) == 0)
+			file_read(path, 16 << 20, &page->viewer, &page->viewer_bytes, NULL);
+	}
+}
+
+static char *text_copy(const char *text, size_t bytes)
+{
+	char *copy = malloc(bytes + 1);
+	if (copy) {
+		memcpy(copy, text, bytes);
+		copy[bytes] = '\0';
+	}
+	return copy;
+}
+
+static void result_take(void *user, const struct job_result *result)
+{
+	struct page *page = user;
+	struct page_outcome *outcome = &page->outcomes[result->number];
+	const struct page_item *item = &page->items[result->number];
+	bp_error error = result->error;
+	if (!error.status && result->record_bytes >= sizeof outcome->result) {
+		const char *text = (const char *)result->record + sizeof outcome->result;
+		memcpy(&outcome->result, result->record, sizeof outcome->result);
+		outcome->sheet = text_copy(text, outcome->result.sheet_bytes);
+		outcome->details = text_copy(text + outcome->result.sheet_bytes, outcome->result.details_bytes);
+		if (!outcome->sheet || !outcome->details)
+			error_memory(&error, result->record_bytes);
+	} else if (!error.status) {
+		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is too short");
+	}
+	if (error.status) {
+		char text[1024];
+		free(outcome->sheet);
+		outcome->sheet = NULL;
+		error_describe(&error, text, sizeof text);
+		outcome->fault = text_copy(text, strlen(text));
+		report_error(page->selection->path, item->entry.name, &error);
+		page->failed++;
+	}
+	outcome->done = true;
+	page->done++;
+	progress_show(page->done, page->count, (double)page->done / (double)page->count);
+}
+
+/* Plans are made before the fork, so that the workers share their memory. */
+static bp_status plans_prepare(struct making *making, bp_error *error)
+{
+	const struct page *page = &making->page;
+	struct record_head head;
+	for (size_t n = 0; n < page->count; n++)
+		if (archive_entry_head(page->selection->archive, &making->items[n].entry, &head, NULL) == BP_OK)
+			return comparison_plans_make(&making->job.plans, head.dims, error);
+	return BP_OK;
+}
+
+static bp_status materials_draw(struct making *making, bp_error *error)
+{
+	struct page *page = &making->page;
+	const struct page_options *options = page->options;
+	struct workers *workers;
+	making->job = (struct page_job){.archive = page->selection->archive,
+	                                .items = making->items,
+	                                .details = page->details,
+	                                .measured = options->measured != NULL,
+	                                .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
+	struct workers_options pool = {.count = page->count < options->workers ? (unsigned)page->count : options->workers,
+	                               .work = page_work,
+	                               .work_user = &making->job,
+	                               .result = result_take,
+	                               .result_user = page};
+	if (page->count == 0)
+		return BP_OK;
+	bp_status status = plans_prepare(making, error);
+	if (status == BP_OK)
+		status = interrupt_install(&pool.wake_fd, error);
+	if (status == BP_OK)
+		status = workers_start(&pool, &workers, error);
+	if (status != BP_OK)
+		return status;
+	progress_start(!options->quiet);
+	for (size_t n = 0; n < page->count && !interrupt_signal(); n++) {
+		while (!workers_idle(workers) && !interrupt_signal())
+			workers_wait(workers, -1);
+		if (!interrupt_signal())
+			workers_submit(workers, &(struct job){.number = n, .name = making->items[n].entry.name, .slot = -1});
+	}
+	while (workers_busy(workers) && !interrupt_signal())
+		workers_wait(workers, -1);
+	workers_stop(workers);
+	progress_stop();
+	return BP_OK;
+}
+
+static bp_status archive_embed(FILE *out, const struct page *page, bp_error *error)
+{
+	char *bytes;
+	size_t count;
+	bp_status status = file_read(page->selection->path, EMBED_BYTES_MAX, &bytes, &count, error);
+	if (status != BP_OK)
+		return status;
+	fputs("<script type=\"application/x-brdfpack\" id=embedded>", out);
+	html_base64(out, (const uint8_t *)bytes, count);
+	fputs("</script>\n", out);
+	free(bytes);
+	return BP_OK;
+}
+
+/* The output as a stream; what went wrong first is kept. */
+struct output {
+	struct output_file file;
+	bp_error error;
+};
+
+static ssize_t output_stream_write(void *user, const char *bytes, size_t count)
+{
+	struct output *output = user;
+	if (!output->error.status && output_file_write(&output->file, bytes, count, &output->error) == BP_OK)
+		return (ssize_t)count;
+	return 0;
+}
+
+static bp_status page_write(const struct page *page, struct output *output, bp_error *error)
+{
+	FILE *out = fopencookie(output, "w", (cookie_io_functions_t){.write = output_stream_write});
+	bp_status status = out ? BP_OK : error_memory(error, BUFSIZ);
+	if (status != BP_OK)
+		return status;
+	page_head_write(out, page);
+	if (page->options->embed)
+		status = archive_embed(out, page, error);
+	if (page->viewer)
+		fwrite(page->viewer, 1, page->viewer_bytes, out);
+	page_sheet_write(out, page);
+	page_archive_write(out, page);
+	if (page->details && page->count)
+		fputs("<section id=details aria-labelledby=details-h><h2 id=details-h>Each material</h2>\n", out);
+	for (size_t n = 0; page->details && n < page->count; n++)
+		if (page->outcomes[n].sheet)
+			fwrite(page->outcomes[n].details, 1, page->outcomes[n].result.details_bytes, out);
+	if (page->details && page->count)
+		fputs("</section>\n", out);
+	page_end_write(out);
+	fclose(out);
+	if (status == BP_OK && output->error.status) {
+		*error = output->error;
+		status = error->status;
+	}
+	return status == BP_OK ? output_file_commit(&output->file, error) : status;
+}
+
+static void making_free(struct making *making)
+{
+	struct page *page = &making->page;
+	for (size_t n = 0; page->outcomes && n < page->count; n++) {
+		free(page->outcomes[n].sheet);
+		free(page->outcomes[n].details);
+		free(page->outcomes[n].fault);
+	}
+	free(page->outcomes);
+	free(making->items);
+	free(page->viewer);
+	byte_buffer_free(&page->verify);
+	source_list_free(&making->sources);
+	comparison_plans_free(&making->job.plans);
+}
+
+int page_run(const struct page_options *options, struct selection *selection)
+{
+	struct making making = {.page = {.options = options, .selection = selection}};
+	struct output output = {.file.fd = -1};
+	struct page *page = &making.page;
+	struct stat facts;
+	bp_error error;
+	page->details = selection->count <= PAGE_DETAILS_MAX;
+	page->archive_bytes = stat(selection->path, &facts) == 0 ? (uint64_t)facts.st_size : 0;
+	viewer_find(page);
+	bp_status status = items_read(&making, &error);
+	if (status == BP_OK && options->embed && !page->viewer)
+		status = error_set(&error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+		                   "--embed: the viewer is not there, so nothing could read the archive; `make viewer` builds it (Debian package emscripten)");
+	if (status == BP_OK)
+		status = sources_find(&making, &error);
+	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */
+		status = output_file_open(options->output, OUTPUT_REPLACE, &output.file, &error);
+	if (status == BP_OK) {
+		bp_archive_verify(selection->archive, 0, problem_note, page, NULL);
+		status = materials_draw(&making, &error);
+	}
+	if (interrupt_signal())
+		report_text("%s: interrupted; not written", options->output);
+	else if (status == BP_OK)
+		status = page_write(page, &output, &error);
+	if (!interrupt_signal() && status != BP_OK)
+		report_error(NULL, NULL, &error);
+	output_file_discard(&output.file);
+	const bool whole = status == BP_OK && !page->failed && !page->problem_count && !selection->incomplete;
+	making_free(&making);
+	return interrupt_signal() ? 128 + interrupt_signal() : whole ? EXIT_OK : EXIT_FAILED;
+}

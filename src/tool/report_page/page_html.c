@@ -1,0 +1,62 @@
+#include "page_html.h"
+
+#include <stdlib.h>
+
+#include "name.h"
+
+void html_text(FILE *out, const char *string)
+{
+	const unsigned char *text = (const unsigned char *)string;
+	while (*text) {
+		uint32_t code = 0;
+		const size_t length = name_character(text, 4, &code);
+		switch (*text) {
+		case '&': fputs("&amp;", out); break;
+		case '<': fputs("&lt;", out); break;
+		case '>': fputs("&gt;", out); break;
+		case '"': fputs("&quot;", out); break;
+		case '\'': fputs("&#39;", out); break;
+		default:
+			if (length == 0 || code < 0x20 || (code >= 0x7f && code < 0xa0))
+				fputs("\xef\xbf\xbd", out);
+			else
+				fwrite(text, 1, length, out);
+		}
+		text += length ? length : 1;
+	}
+}
+
+void html_name(FILE *out, const char *name)
+{
+	fputs("<bdi>", out);
+	html_text(out, name);
+	fputs("</bdi>", out);
+}
+
+void html_base64(FILE *out, const uint8_t *bytes, size_t count)
+{
+	static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+	for (size_t n = 0; n < count; n += 3) {
+		const size_t left = count - n;
+		const uint32_t triple = (uint32_t)bytes[n] << 16 | (left > 1 ? (uint32_t)bytes[n + 1] << 8 : 0) | (left > 2 ? bytes[n + 2] : 0);
+		const char four[4] = {DIGITS[triple >> 18], DIGITS[triple >> 12 & 63], left > 1 ? DIGITS[triple >> 6 & 63] : '=',
+		                      left > 2 ? DIGITS[triple & 63] : '='};
+		fwrite(four, 1, sizeof four, out);
+	}
+}
+
+bp_status html_picture(FILE *out, const struct picture *picture, const char *style, const char *alt, bp_error *error)
+{
+	uint8_t *png;
+	size_t bytes;
+	bp_status status = picture_encode_png(picture, &png, &bytes, error);
+	if (status != BP_OK)
+		return status;
+	fprintf(out, "<img class=\"%s\" loading=lazy width=%u height=%u alt=\"", style, picture->width, picture->height);
+	html_text(out, alt);
+	fputs("\" src=\"data:image/png;base64,", out);
+	html_base64(out, png, bytes);
+	fputs("\">", out);
+	free(png);
+	return BP_OK;
+}

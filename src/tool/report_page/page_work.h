@@ -1,0 +1,40 @@
+/* page_work.h: one material -> its part of the page, in a worker. */
+#ifndef TOOL_REPORT_PAGE_PAGE_WORK_H
+#define TOOL_REPORT_PAGE_PAGE_WORK_H
+
+#include "merl/source.h"
+#include "page.h"
+#include "render/comparison.h"
+#include "tool/workers.h"
+
+/* One material of the page. */
+struct page_item {
+	struct index_entry entry;
+	const struct source_item *source; /* its measured file, or NULL */
+};
+
+/* What a worker sends back: this, then the HTML of the contact sheet's item, then that of the details. */
+struct page_result {
+	uint32_t record_bytes;
+	uint32_t layer_count;
+	uint32_t layer_bytes[LAYERS_MAX];
+	double layer_error[LAYERS_MAX]; /* log RMSE */
+	double albedo;                  /* the largest directional one */
+	bool measured;                  /* compared with its file */
+	bool compared[LIGHTING_COUNT];
+	double psnr[LIGHTING_COUNT];    /* float, where compared */
+	uint32_t sheet_bytes, details_bytes;
+};
+
+/* All that a worker needs; filled before the fork. */
+struct page_job {
+	const struct bp_archive *archive;
+	const struct page_item *items;
+	bool details, measured; /* measured files were asked for */
+	struct comparison_plans plans; /* a worker's own from the fork on */
+	struct source_cursor cursor;
+};
+
+worker_fn page_work; /* its user is a struct page_job, job->number the item's */
+
+#endif
