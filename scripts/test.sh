@@ -13,14 +13,14 @@
 #     mitsuba   the plugin for Mitsuba 3, which pip fetches (in continuous integration, or when named; skipped where pip cannot)
 #     debian    Debian packages of the tree, and lintian (in continuous integration, or when named)
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
-#     clang     builds everything by clang with warnings as errors
+#     clang     builds everything by clang with warnings as errors; and the libraries by both with -flto
 #     valgrind  a small build, list, extract and verify under valgrind
 #     pinned    bytes, errors and decoded values of the demo materials against tests/pinned.tsv
 #     stress    adversarial materials through every profile (the short form of `make stress`)
 #     faults    damaged archives, killed and starved builds, threads (the short form of `make faults`)
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
 #     slurm     shards as an array job on Slurm, on this machine alone (in continuous integration, or when named)
-#     arm64     unit tests on ARM64, cross-compiled and run under qemu (in continuous integration, or when named)
+#     arm64     unit tests on ARM64, cross-compiled and run under qemu (when named)
 #     viewer    the report and its viewer: the WebAssembly reader in Node, the page in Chromium (installs these, or says that it was skipped)
 #     fuzz      each fuzz target for some seconds
 #
@@ -30,24 +30,25 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 
 # in the order they start: the longest first
-all_jobs="asan faults fuzz viewer python stress unit pinned package cli bench install portable valgrind clang house"
-on_request="slurm arm64 mitsuba debian"
+all_jobs="asan faults fuzz python stress unit pinned package cli bench install portable valgrind clang house"
+in_ci="slurm"
+on_request="viewer arm64 mitsuba debian"
 logs=build/logs
 passed=0
 failed=0
 
 for job in "$@"; do
-	case " $all_jobs $on_request " in
+	case " $all_jobs $in_ci $on_request " in
 	*" $job "*) ;;
 	*)
-		echo "test.sh: unknown job '$job'; jobs are $all_jobs $on_request" >&2
+		echo "test.sh: unknown job '$job'; jobs are $all_jobs $in_ci $on_request" >&2
 		exit 2
 		;;
 	esac
 done
 jobs=""
-for job in $all_jobs $on_request; do
-	if { [ $# = 0 ] && { [ -n "${CI:-}" ] || [[ " $on_request " != *" $job "* ]]; }; } || [[ " $* " == *" $job "* ]]; then jobs+=" $job"; fi
+for job in $all_jobs $in_ci $on_request; do
+	if { [ $# = 0 ] && { [[ " $all_jobs " == *" $job "* ]] || { [ -n "${CI:-}" ] && [[ " $in_ci " == *" $job "* ]]; }; }; } || [[ " $* " == *" $job "* ]]; then jobs+=" $job"; fi
 done
 # does any of these jobs run?
 wanted() {
@@ -153,7 +154,10 @@ job_asan() {
 	export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1
 	build asan && unit_tests asan && cli_tests asan
 }
-job_clang() { build clang; }
+job_clang() {
+	build clang
+	check "libraries by -flto" "$logs/lto.log" tests/lto.sh build/lto
+}
 job_install() { build test && check "installed library" "$logs/install.log" tests/install.sh build/test "${test_flags[@]}"; }
 job_portable() { build test && check "the reading half alone" "$logs/portable.log" tests/portable.sh build/test; }
 job_mitsuba() {

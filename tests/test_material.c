@@ -239,6 +239,27 @@ static void options_out_of_range_are_refused(void **state)
 	bp_archive_close(archive);
 }
 
+/* The limit is what brdfpack.h says: 24 bytes per cell and 1 MB. */
+static void what_may_need_more_memory_than_allowed_is_refused(void **state)
+{
+	(void)state;
+	bp_archive *archive = opened();
+	bp_material_info info = {.struct_bytes = sizeof info};
+	bp_load_options options = {.struct_bytes = sizeof options};
+	bp_material *material = NULL;
+	bp_error error;
+	assert_int_equal(bp_archive_info(archive, 0, &info, NULL), BP_OK);
+	const size_t need = (size_t)24 * info.theta_h * info.theta_d * info.phi_d + 1000000;
+	options.max_memory_bytes = need - 1;
+	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_ERROR_LIMIT);
+	assert_null(material);
+	assert_non_null(strstr(error.message, "max_memory_bytes"));
+	options.max_memory_bytes = need;
+	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_OK);
+	bp_material_free(material);
+	bp_archive_close(archive);
+}
+
 static void opening_and_loading_read_little_more_than_the_record(void **state)
 {
 	(void)state;
@@ -383,6 +404,7 @@ int main(void)
 		cmocka_unit_test(a_preview_is_the_same_material_of_fewer_values),
 		cmocka_unit_test(options_decide_what_is_there_and_it_says_so),
 		cmocka_unit_test(options_out_of_range_are_refused),
+		cmocka_unit_test(what_may_need_more_memory_than_allowed_is_refused),
 		cmocka_unit_test(opening_and_loading_read_little_more_than_the_record),
 		cmocka_unit_test(a_material_outlives_its_archive),
 		cmocka_unit_test(several_threads_load_from_one_archive),
