@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Packs a folder of measured materials under several budgets and prints tables of `brdfpack compare`, in Markdown.
 
-    scripts/accuracy_table.py [--brdfpack PROGRAM] [--peers TSV] [--names FILE] CLEAN [NOISY]
+    scripts/accuracy_table.py [--brdfpack PROGRAM] [--peers TSV] [--names FILE] [--genuine FOLDER] CLEAN [NOISY]
 
 CLEAN holds MERL files without noise. NOISY, where given, holds the same materials with noise: they are packed, and
 what is decoded is compared with CLEAN, the truth. --names FILE: these materials (one per line) get a row each beside
-the figures of tthresh from --peers (src/bench/peers-nine.tsv), the others one row in all. Standard library only.
+the figures of tthresh from --peers (src/bench/peers-nine.tsv), the others one row in all. --genuine FOLDER: a further table, of
+MERL files made of genuine measurements of the RGL database, beside tthresh's figures where --genuine-peers has them. Standard library only.
 """
 import argparse
 import csv
@@ -40,11 +41,34 @@ def peers_read(path):
         return {(row["name"], row["input"]): row for row in csv.DictReader(file, delimiter="\t") if row["codec"] == "tthresh"}
 
 
+def genuine_table(arguments, scratch):
+    """The block "genuine (RGL)": what was measured, not made."""
+    folder = arguments.genuine
+    names = sorted(name[:-7] for name in os.listdir(folder) if name.endswith(".binary"))
+    with open(arguments.genuine_peers, encoding="utf-8") as file:
+        peers = {row["name"]: row for row in csv.DictReader(file, delimiter="\t")}
+    full = compare(arguments, scratch, folder, folder, names)
+    small = compare(arguments, scratch, folder, folder, names, "--budget", "16000")
+    paper = compare(arguments, scratch, folder, folder, names, "--profile", "paper")
+    print("\n| genuine (RGL) | tthresh: key / env / log RMSE | spectral: key / env / log RMSE | 16,000 bytes: key | paper: key |")
+    print("|---|---|---|--:|--:|")
+    rows = []
+    for name in names:
+        peer = peers.get(name)
+        row = full[name]
+        rows.append([psnr(row, "key"), psnr(row, "env"), row["log_rmse"], psnr(small[name], "key"), psnr(paper[name], "key")])
+        print("| %s | %s | %.2f / %.2f / %.5f | %.2f | %.2f |" % (
+            name, "%s / %s / %s" % (peer["psnr_key"], peer["psnr_env"], peer["logrmse"]) if peer else "", *rows[-1]))
+    print("| **mean** | | %.2f / %.2f / %.5f | %.2f | %.2f |" % tuple(statistics.mean(column) for column in zip(*rows)))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--brdfpack", default="build/brdfpack")
     parser.add_argument("--peers", default="src/bench/peers-nine.tsv")
     parser.add_argument("--names", default="manifests/paper-nine.txt")
+    parser.add_argument("--genuine")
+    parser.add_argument("--genuine-peers", default="src/bench/peers-genuine.tsv")
     parser.add_argument("clean")
     parser.add_argument("noisy", nargs="?")
     arguments = parser.parse_args()
@@ -60,8 +84,8 @@ def main():
         full, small = run(arguments.clean, nine), run(arguments.clean, nine, "--budget", "40000")
         paper = run(arguments.clean, nine, "--profile", "paper")
         noisy = run(arguments.noisy, nine) if arguments.noisy else {}
-        print("| material | tthresh: key / env / log RMSE | default: key / env / log RMSE | 40,000 bytes: key / env |"
-              " paper: key | noisy: tthresh / default |")
+        print("| material | tthresh: key / env / log RMSE | spectral: key / env / log RMSE | 40,000 bytes: key / env |"
+              " paper: key | noisy: tthresh / spectral |")
         print("|---|---|---|---|--:|---|")
 
         def line(name, peer, row, less, old, noise):
@@ -106,6 +130,8 @@ def main():
             summary("these, noisy, against the truth", "60,400", noisy)
             if others:
                 summary("%d others, noisy, against the truth" % len(others), "60,400", run(arguments.noisy, others))
+        if arguments.genuine:
+            genuine_table(arguments, scratch)
 
 
 if __name__ == "__main__":

@@ -10,8 +10,8 @@
 #     install   installs into a scratch folder; symbols; a consumer built through pkg-config
 #     python    the independent Python reader against the C library
 #     package   the Python package in a clean virtual environment (skipped where pip reaches no index)
-#     mitsuba   the plugin for Mitsuba 3, which pip fetches (in continuous integration, or when named; skipped where pip cannot)
-#     debian    Debian packages of the tree, and lintian (in continuous integration, or when named)
+#     mitsuba   the plugin for Mitsuba 3, which pip fetches (when named; skipped where pip cannot)
+#     debian    Debian packages of the tree, and lintian (when named)
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
 #     clang     builds everything by clang with warnings as errors; and the libraries by both with -flto
 #     valgrind  a small build, list, extract and verify under valgrind
@@ -21,7 +21,7 @@
 #     bench     the benchmark programs on small tables: they run, and their tables and plots are whole
 #     slurm     shards as an array job on Slurm, on this machine alone (in continuous integration, or when named)
 #     arm64     unit tests on ARM64, cross-compiled and run under qemu (when named)
-#     viewer    the report and its viewer: the WebAssembly reader in Node, the page in Chromium (installs these, or says that it was skipped)
+#     viewer    the report and its viewer: the WebAssembly reader in Node, the page in Chromium (when named; installs these, or says that it was skipped)
 #     fuzz      each fuzz target for some seconds
 #
 # Without a JOB: all of them, but for what is said above. First everything they need is built, then the jobs run, as many at once as there are
@@ -173,6 +173,7 @@ job_package() { build test && check "the Python package" "$logs/package.log" tes
 job_python() {
 	build test || return
 	check "python reader, vectors" "$logs/python-vectors.log" tests/python_reader.sh build/test
+	check "the range encoder as it is specified" "$logs/python-coder.log" tests/python_coder.py format-spec/vectors
 	check "python reader, demo set" "$logs/python-demo.log" tests/python.sh build/test
 }
 job_valgrind() { build test && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }

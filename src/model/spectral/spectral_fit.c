@@ -264,6 +264,9 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		status = fields_make(d, order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
 	if (!status && project && !fitted->noisy && seen.valid_count < cells)
 		status = fields_improve(&seen, options, spectrum, order, filled, fitted, error);
+	/* Where noise is drawn towards 0, even steps do as well by what is under it (VARIANTS.md). */
+	if (fitted->noisy)
+		memset(fitted->weights, 0, sizeof fitted->weights);
 	if (!status && !bound)
 		status = weights_divide(fitted, error);
 	free(counted);
