@@ -49,7 +49,7 @@ static void row_print(FILE *out, const struct lattice *lattice, const char *name
 	size_t bytes;
 	bp_error error;
 
-	if (record_pack(lattice, name, &source, &options, &record, &bytes, &head, &error) || record_decode_whole(&head, 0, record, &model, &error) ||
+	if (record_encode(lattice, name, &source, &options, &record, &bytes, &head, &error) || record_decode_whole(&head, 0, record, &model, &error) ||
 	    expansion_alloc(lattice->dims, &table, &error) || model_expand(model, 0, &table, &error)) {
 		fprintf(stderr, "%s: %s\n", name, error.message);
 		exit(1);

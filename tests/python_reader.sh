@@ -2,7 +2,7 @@
 # python_reader.sh BUILD: compares the independent reader (scripts/read_bpk.py) with the library.
 #
 # Every archive of format-spec/vectors must be judged alike, and every decoded value agree to 1e-5; then the
-# same for records that were fitted in this very build (BUILD/tests/test_record_pack makes them), and for what both
+# same for records that were fitted in this very build (BUILD/tests/test_record_encode makes them), and for what both
 # evaluate at some angles, to 1e-3: the library's table has 10 bits of mantissa. A slow oracle (paper_oracle.py) works
 # out the paper's profile itself.
 set -eu
@@ -44,7 +44,7 @@ for values in "$vectors"/*.values; do
 	python3 "$reader" compare "${values%.values}.bpk" "$values" || fail "$values"
 done
 
-"$build/tests/test_record_pack" --write "$folder"
+"$build/tests/test_record_encode" --write "$folder"
 for values in "$folder"/*.values; do
 	count=$((count + 1))
 	python3 "$reader" verify "${values%.values}.bpk" >"$folder/said" || fail "$values"

@@ -21,7 +21,7 @@ void packed_make(const struct lattice *lattice, const struct carried *carried, c
 	memset(out, 0, sizeof *out);
 	out->status = carried ? record_carried(lattice, carried, name, options, &out->record, &out->record_bytes, NULL) : BP_OK;
 	if (!out->status && !out->record)
-		out->status = record_pack(lattice, name, &source, options, &out->record, &out->record_bytes, NULL, NULL);
+		out->status = record_encode(lattice, name, &source, options, &out->record, &out->record_bytes, NULL, NULL);
 	if (!out->status)
 		out->status = record_head_parse(out->record, out->record_bytes, &out->head, NULL);
 	if (out->status)

@@ -9,7 +9,7 @@
 
 /* A lattice packed and decoded again; free with packed_free. */
 struct packed_table {
-	bp_status status;        /* of record_pack */
+	bp_status status;        /* of record_encode */
 	struct record_head head;
 	uint8_t *record;
 	size_t record_bytes;

@@ -28,7 +28,7 @@ static struct held held_make(double unit)
 	lattice.valid_count = CELLS - (CELLS + 4) / 5;
 	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = 60400, .effort = 5};
 	const struct record_source source = {0};
-	assert_int_equal(record_pack(&lattice, "a", &source, &options, &record, &record_bytes, NULL, NULL), BP_OK);
+	assert_int_equal(record_encode(&lattice, "a", &source, &options, &record, &record_bytes, NULL, NULL), BP_OK);
 	assert_int_equal(bp_writer_create(&writer, NULL), BP_OK);
 	assert_int_equal(bp_writer_add(writer, record, record_bytes, NULL), BP_OK);
 	assert_int_equal(bp_writer_save_memory(writer, &held.bytes, &count, NULL), BP_OK);

@@ -29,7 +29,7 @@ static uint8_t *packed(int n, size_t *bytes)
 						0.1 * (c + 1) + (2 + n % 7 + d * d) * exp(-8 * h * h) * (1 + 0.2 * d * h * cos(2 * M_PI * p));
 				}
 	lattice_validate(&lattice);
-	if (record_pack(&lattice, name, &source, &options, &record, bytes, NULL, &error))
+	if (record_encode(&lattice, name, &source, &options, &record, bytes, NULL, &error))
 		fail_msg("%s", error.message);
 	lattice_free(&lattice);
 	return record;

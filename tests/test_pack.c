@@ -69,7 +69,7 @@ static void all_layouts_and_numbers_give_the_record_of_the_lattice(void **state)
 	memcpy(lattice.rgb[1], t->planes + CELLS, CELLS * sizeof(double));
 	memcpy(lattice.rgb[2], t->planes + 2 * CELLS, CELLS * sizeof(double));
 	lattice_validate(&lattice);
-	assert_int_equal(record_pack(&lattice, "a", &source, &options, &expected.bytes, &expected.count, NULL, NULL), BP_OK);
+	assert_int_equal(record_encode(&lattice, "a", &source, &options, &expected.bytes, &expected.count, NULL, NULL), BP_OK);
 	for (int n = 0; n < 4; n++) {
 		struct packed got = pack(&ways[n], "a", NULL);
 		assert_same(got, expected);

@@ -22,7 +22,7 @@ static void a_preview_holds_every_second_value(void **state)
 		size_t bytes;
 		bp_error error;
 		glossy_lattice_make(dims, 1, &lattice);
-		if (record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, &error))
+		if (record_encode(&lattice, "x", &source, &options, &record, &bytes, &head, &error))
 			fail_msg("%s", error.message);
 		for (uint32_t layers = 1; layers <= head.layer_count; layers++) {
 			if (record_decode_whole(&head, layers, record, &fitted, &error))
@@ -96,7 +96,7 @@ static void a_preview_of_one_in_a_hundred_reads_at_most_24_KiB_and_all_of_it_16_
 	bp_error error;
 	char path[512];
 	assert_int_equal(demo_generate(0, LATTICE_MERL, false, &lattice, NULL), BP_OK);
-	if (record_pack(&lattice, "material-057", &source, &options, &record, &bytes, &head, &error))
+	if (record_encode(&lattice, "material-057", &source, &options, &record, &bytes, &head, &error))
 		fail_msg("%s", error.message);
 	lattice_free(&lattice);
 	strcpy(path, fixture_path("hundred.bpk"));
@@ -143,7 +143,7 @@ static void pairs_that_are_independent_are_neither_stored_nor_read(void **state)
 							(1 + 9 * exp(-0.2 * i * i)) * (1 + 0.1 * j) * (1 + 0.2 * cos(2 * M_PI * k / dims.phi_d)) +
 							(independent ? 0 : 0.3 * ((i * 7 + j * 13 + k * 29) % 5));
 		lattice_validate(&lattice);
-		if (record_pack(&lattice, "x", &source, &options, &record, &bytes[independent], &head, &error))
+		if (record_encode(&lattice, "x", &source, &options, &record, &bytes[independent], &head, &error))
 			fail_msg("%s", error.message);
 		assert_int_equal(head.left_out, independent ? 7 : 0);
 		assert_int_equal(archive_writer_open(fixture_path("x.bpk"), &writer, NULL), BP_OK);

@@ -54,7 +54,7 @@ static void packed_make(const struct fit_options *options, struct packed *packed
 		for (int c = 0; c < 3; c++)
 			lattice.rgb[c][n] = below[n] ? -1 : lattice.rgb[c][n] * (1 + 0.3 * sin((double)(n * (size_t)(c + 3)))); /* rough: the budget binds */
 	lattice_validate(&lattice);
-	assert_int_equal(record_pack(&lattice, "first", &MEASURED, options, &packed->record, &packed->bytes, NULL, NULL), BP_OK);
+	assert_int_equal(record_encode(&lattice, "first", &MEASURED, options, &packed->record, &packed->bytes, NULL, NULL), BP_OK);
 	decode(packed);
 	lattice_free(&lattice);
 }
@@ -189,7 +189,7 @@ static void another_request_is_packed_anew(void **state)
 	assert_false(kept(&file, "m", USUAL[0]));
 	options = (struct fit_options){.profile = PROFILE_SPECTRAL, .budget_bytes = 100000, .max_error = 0.01, .effort = 5};
 	assert_false(kept(&file, "m", options)); /* a smaller record might do */
-	assert_false(kept(&file, "no/name", USUAL[1])); /* record_pack says why */
+	assert_false(kept(&file, "no/name", USUAL[1])); /* record_encode says why */
 	file_free(&file);
 	packed_free(&first);
 
@@ -303,7 +303,7 @@ static void without_room_nothing_is_carried(void **state)
 	struct packed packed = {0};
 	struct file file = {0};
 	glossy_lattice_make((struct lattice_dims){4, 4, 4}, 1, &file.lattice);
-	assert_int_equal(record_pack(&file.lattice, "m", &MEASURED, &USUAL[1], &packed.record, &packed.bytes, NULL, NULL), BP_OK);
+	assert_int_equal(record_encode(&file.lattice, "m", &MEASURED, &USUAL[1], &packed.record, &packed.bytes, NULL, NULL), BP_OK);
 	file_free(&file);
 	decode(&packed);
 	extracted(&packed, packed.record, packed.bytes, &file);

@@ -40,7 +40,7 @@ static void decoded(const struct lattice *lattice, struct expansion *out)
 	struct model *model = NULL;
 	uint8_t *record;
 	size_t bytes;
-	assert_int_equal(record_pack(lattice, "m", &source, &options, &record, &bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_encode(lattice, "m", &source, &options, &record, &bytes, &head, NULL), BP_OK);
 	assert_int_equal(record_decode_whole(&head, 0, record, &model, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(lattice->dims, out, NULL), BP_OK);
 	assert_int_equal(model_expand(model, 0, out, NULL), BP_OK);

@@ -32,7 +32,7 @@ static struct model *model_make(enum profile profile, struct lattice_dims dims, 
 	uint8_t *record = NULL;
 	size_t bytes;
 	glossy_lattice_make(dims, unit, &lattice);
-	assert_int_equal(record_pack(&lattice, "x", &source, &options, &record, &bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_encode(&lattice, "x", &source, &options, &record, &bytes, &head, NULL), BP_OK);
 	assert_int_equal(record_decode_whole(&head, 0, record, &model, NULL), BP_OK);
 	lattice_free(&lattice);
 	free(record);

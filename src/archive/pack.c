@@ -115,7 +115,7 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 		source.bytes = measured->source_bytes;
 		source.nonfinite_count = lattice.nonfinite_count;
 		memcpy(source.sha256, measured->source_sha256, sizeof source.sha256);
-		status = record_pack(&lattice, name, &source, &fit, record, record_bytes, NULL, error);
+		status = record_encode(&lattice, name, &source, &fit, record, record_bytes, NULL, error);
 	}
 	lattice_free(&lattice);
 	environment_leave(&before);

@@ -1,7 +1,7 @@
 /*
  * profile.c: this project's own records, through the same functions as `brdfpack build` and `extract`.
  *
- * fit = record_pack (which also decodes and measures every layer); decode = record_head_parse, record_decode,
+ * fit = record_encode (which also decodes and measures every layer); decode = record_head_parse, record_decode,
  * model_expand; evaluation = table_evaluate, interpolated, in the expanded memory form. The bytes are the whole
  * record's.
  */
@@ -43,7 +43,7 @@ static bp_status fit_profile(enum profile profile, const struct bench_material *
 
 	if (!state)
 		return error_memory(error, sizeof *state);
-	status = record_pack(material->lattice, material->name, &source, &options, &state->record, &state->bytes, &state->head, error);
+	status = record_encode(material->lattice, material->name, &source, &options, &state->record, &state->bytes, &state->head, error);
 	if (status)
 		profile_free(state);
 	else

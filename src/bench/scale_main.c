@@ -26,7 +26,7 @@ static bp_status record_make(uint8_t **record, size_t *bytes, bp_error *error)
 		for (size_t i = 0; i < lattice_cells(lattice.dims); i++)
 			lattice.rgb[c][i] = 0.1 * (c + 1) + 0.01 * (double)(i % 7);
 	lattice_validate(&lattice);
-	status = record_pack(&lattice, "m", &source, &options, record, bytes, NULL, error);
+	status = record_encode(&lattice, "m", &source, &options, record, bytes, NULL, error);
 	lattice_free(&lattice);
 	return status;
 }

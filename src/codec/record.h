@@ -1,7 +1,7 @@
 /*
  * record.h: model <-> bytes: one material's record (format-spec/FORMAT.md, "Record").
  *
- *     record_pack   = model_fit -> sections -> decode -> fidelity of every layer -> head
+ *     record_encode   = model_fit -> sections -> decode -> fidelity of every layer -> head
  *     record_head_parse -> record_decode -> model
  */
 #ifndef CODEC_RECORD_H
@@ -93,7 +93,7 @@ uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t sect
  * options->max_error > 0 the budget does not count: the record is the smallest found whose log RMSE is at
  * most max_error; BP_ERROR_LIMIT says what was reached when 4,000,000 bytes do not suffice.
  */
-bp_status record_pack(const struct lattice *lattice, const char *name, const struct record_source *source,
+bp_status record_encode(const struct lattice *lattice, const char *name, const struct record_source *source,
                       const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
                       bp_error *error);
 

@@ -79,7 +79,7 @@ static bp_status record_get(const struct build *build, const char *name, const s
 	if (status || *record)
 		return status;
 	delivery->origin = RECORD_FITTED;
-	return record_pack(lattice, name, &delivery->source, options, record, record_bytes, NULL, error);
+	return record_encode(lattice, name, &delivery->source, options, record, record_bytes, NULL, error);
 }
 
 /* Both in one piece. The record is freed. */

@@ -1,5 +1,5 @@
 /*
- * From a lattice to a record and back. `test_record_pack --write FOLDER` writes the archives of these
+ * From a lattice to a record and back. `test_record_encode --write FOLDER` writes the archives of these
  * lattices, their values and what is evaluated at some angles for tests/python_reader.sh.
  */
 #include "values.h"
@@ -36,7 +36,7 @@ static bp_status pack(const struct lattice *lattice, uint32_t budget, double max
 {
 	struct fit_options options = { .profile = tested, .budget_bytes = budget, .max_error = max_error, .effort = 5 };
 	struct record_source source = { .bytes = 1234, .sha256 = { 1, 2, 3 }, .nonfinite_count = 7 };
-	return record_pack(lattice, "material", &source, &options, record, bytes, head, error);
+	return record_encode(lattice, "material", &source, &options, record, bytes, head, error);
 }
 
 static void the_recorded_error_of_every_layer_is_the_measured_one(void **state)
@@ -189,9 +189,9 @@ static void an_illegal_name_is_refused(void **state)
 	size_t bytes;
 	(void)state;
 	lattice_make(DIMS[1], 1, &lattice);
-	assert_int_equal(record_pack(&lattice, "a/b", &source, &options, &record, &bytes, NULL, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(record_encode(&lattice, "a/b", &source, &options, &record, &bytes, NULL, NULL), BP_ERROR_ARGUMENT);
 	options.profile = (enum profile)77;
-	assert_int_equal(record_pack(&lattice, "a", &source, &options, &record, &bytes, NULL, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(record_encode(&lattice, "a", &source, &options, &record, &bytes, NULL, NULL), BP_ERROR_ARGUMENT);
 	lattice_free(&lattice);
 }
 

@@ -150,7 +150,7 @@ static bp_status record_search(const struct packing *packing, double max_error, 
 	return BP_OK;
 }
 
-bp_status record_pack(const struct lattice *lattice, const char *name, const struct record_source *source,
+bp_status record_encode(const struct lattice *lattice, const char *name, const struct record_source *source,
                       const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
                       bp_error *error)
 {
