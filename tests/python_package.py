@@ -361,7 +361,8 @@ class Packing(unittest.TestCase):
         timer = threading.Timer(0.5, press)
         timer.start()
         with self.assertRaises(KeyboardInterrupt):
-            brdfpack.pack(table, max_error=1e-3, effort=9)
+            while True:  # a fast machine packs one before the key is pressed
+                brdfpack.pack(table, effort=9)
         took = time.monotonic() - pressed[0]
         print(f"interrupted within {took:.3f} s; 0.2 are asked for", file=sys.stderr)
         self.assertLess(took, 2)  # a busy machine is no failure

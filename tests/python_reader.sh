@@ -52,8 +52,9 @@ for values in "$folder"/*.values; do
 	looks=${values%.values}.looks
 	# shellcheck disable=SC2046 # angles are words
 	python3 "$reader" evaluate "${values%.values}.bpk" "$(cut -d' ' -f1 "$values" | head -1)" $(cut -d' ' -f1-3 "$looks") >"$folder/said" || fail "$looks"
+	# The library's tables for rendering hold no value below 2^-61.
 	paste -d' ' "$looks" "$folder/said" | awk '
-		{ for (c = 4; c < 7; c++) if (($c - $(c + 3)) ^ 2 > (1e-3 * $c) ^ 2) bad++ }
+		{ for (c = 4; c < 7; c++) if (($c - $(c + 3)) ^ 2 > (1e-3 * $c + 2 ^ -61) ^ 2) bad++ }
 		END { exit bad > 0 || NR < 10 }' || fail "$looks"
 done
 

@@ -28,8 +28,15 @@ static const struct {
 	{PROFILE_SPECTRAL, "checkerboard", WHOLE_TEN, 10},
 	{PROFILE_SPECTRAL, "odd-channel", WHOLE_ONE, 10},
 	{PROFILE_SPECTRAL, "odd-channel", WHOLE_TEN, 30},
-	{PROFILE_SPECTRAL, "random-validity", WHOLE_ONE, 2}, /* a hundredth of the cells: not always recognised */
+	/* Edges and gaps of validity or brightness: a decoded table is fitted like a measurement, not recognised. */
+	{PROFILE_SPECTRAL, "random-validity", WHOLE_ONE, 2},
 	{PROFILE_SPECTRAL, "random-validity", WHOLE_TEN, 2},
+	{PROFILE_SPECTRAL, "step", WHOLE_ONE, 4},
+	{PROFILE_SPECTRAL, "step", WHOLE_TEN, 6},
+	{PROFILE_SPECTRAL, "missing-slices", WHOLE_ONE, 3},
+	{PROFILE_SPECTRAL, "missing-slices", WHOLE_TEN, 3},
+	{PROFILE_SPECTRAL, "nonfinite", WHOLE_ONE, 1},
+	{PROFILE_SPECTRAL, "denormal", WHOLE_ONE, 1},
 };
 
 double limit_of(const struct subject *subject, uint32_t budget, const char *kind, enum property property)
