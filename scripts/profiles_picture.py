@@ -57,7 +57,7 @@ def main():
         image, archive = os.path.join(scratch, "sphere.pfm"), os.path.join(scratch, "one.bpk")
 
         def sphere(*what):
-            subprocess.run([arguments.brdfpack, "render", "--size", str(arguments.size), "-o", image, *what], check=True)
+            subprocess.run([arguments.brdfpack, "render", "--force", "--size", str(arguments.size), "-o", image, *what], check=True)
             return pfm_read(image)
         for path in arguments.files:
             name, spheres = os.path.splitext(os.path.basename(path))[0], [sphere(path)]
