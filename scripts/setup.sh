@@ -18,7 +18,7 @@ set -euo pipefail
 
 # package:command, where any version of the command will do, however it was installed
 build="gcc:gcc make:make libc6-dev zlib1g-dev libarchive-dev nettle-dev libpng-dev"
-test="libc6-dev-i386 lib32gcc-12-dev libcmocka-dev libgsl-dev python3:python3 python3-dev python3-venv pkg-config:pkg-config cmake:cmake liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
+test="clang-format-14:clang-format-14 libc6-dev-i386 lib32gcc-12-dev libcmocka-dev libgsl-dev python3:python3 python3-dev python3-venv pkg-config:pkg-config cmake:cmake liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
 # not gcc-aarch64-linux-gnu, which gcc-multilib excludes
@@ -54,7 +54,8 @@ for entry in $wanted; do
 	[ "$entry" = "$package" ] || command=${entry#*:}
 	package=${package/=/:} # of another architecture, as dpkg has it
 	[ -z "$command" ] || ! command -v "$command" >/dev/null 2>&1 || continue
-	[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
+	# a line for each architecture that has it
+	dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
 done
 [ ${#missing[@]} -gt 0 ] || exit 0
 

@@ -3,7 +3,7 @@
 #
 #     scripts/test.sh [JOB]...
 #
-#     house     the plan of src: which wing may include which, and that the map is true
+#     house     the plan of src: which wing may include which, that the map is true, and the sources' form
 #     unit      unit tests, built by gcc with warnings as errors
 #     cli       command-line tests (tests/cli)
 #     portable  the reading half: what it links, and its values without the system and on 32 bits
@@ -179,7 +179,10 @@ job_python() {
 job_valgrind() { build test && check "valgrind" "$logs/valgrind.log" tests/valgrind.sh build/test; }
 job_stress() { build test && check "stress" "$logs/stress.log" make -s "${test_build[@]}" STRESS_FLAGS="-g 2 -q -v" stress; }
 job_faults() { build test && check "faults" "$logs/faults.log" make -s "${test_build[@]}" faults; }
-job_house() { check "the plan of src" "$logs/house.log" tests/house.py; }
+job_house() {
+	check "the plan of src" "$logs/house.log" tests/house.py
+	check "the form of the sources" "$logs/form.log" tests/form.sh
+}
 job_pinned() { build pinned && check "pinned" "$logs/pinned.log" make -s "${test_build[@]}" pinned; }
 job_bench() {
 	build test || return

@@ -57,17 +57,18 @@ BP_API const char *bp_version_text(void);
 /* Status of a call. The values are pinned: they never change their meaning. */
 typedef enum bp_status {
 	BP_OK = 0,
-	BP_ERROR_ARGUMENT = 1,    /* the caller's mistake */
-	BP_ERROR_MEMORY = 2,      /* an allocation failed */
-	BP_ERROR_IO = 3,          /* the system refused to read or write */
-	BP_ERROR_NOT_OURS = 4,    /* this is not a brdfpack archive (or not a MERL file) */
-	BP_ERROR_UNSUPPORTED = 5, /* intact, but made for a newer reader, or by a writer so old that it is no longer read: the message says */
-	BP_ERROR_CORRUPT = 6,     /* damaged: a value that no writer writes */
-	BP_ERROR_CHECKSUM = 7,    /* damaged: a CRC32 differs */
-	BP_ERROR_LIMIT = 8,       /* beyond a limit that the specification sets */
-	BP_ERROR_NOT_FOUND = 9,   /* no material of that name or number */
-	BP_ERROR_BAD_INPUT = 10,  /* a measured material that cannot be packed */
-	BP_ERROR_CANCELLED = 11   /* the caller's callback ended it */
+	BP_ERROR_ARGUMENT = 1, /* the caller's mistake */
+	BP_ERROR_MEMORY = 2,   /* an allocation failed */
+	BP_ERROR_IO = 3,       /* the system refused to read or write */
+	BP_ERROR_NOT_OURS = 4, /* this is not a brdfpack archive (or not a MERL file) */
+	BP_ERROR_UNSUPPORTED =
+		5, /* intact, but made for a newer reader, or by a writer so old that it is no longer read: the message says */
+	BP_ERROR_CORRUPT = 6,    /* damaged: a value that no writer writes */
+	BP_ERROR_CHECKSUM = 7,   /* damaged: a CRC32 differs */
+	BP_ERROR_LIMIT = 8,      /* beyond a limit that the specification sets */
+	BP_ERROR_NOT_FOUND = 9,  /* no material of that name or number */
+	BP_ERROR_BAD_INPUT = 10, /* a measured material that cannot be packed */
+	BP_ERROR_CANCELLED = 11  /* the caller's callback ended it */
 } bp_status;
 
 #define BP_NO_OFFSET UINT64_MAX
@@ -121,11 +122,11 @@ typedef int bp_read_fn(void *user, uint64_t offset, void *bytes, size_t count);
 
 /* Where an archive is read from. The caller sets struct_bytes. */
 typedef struct bp_source {
-	size_t struct_bytes;        /* sizeof(bp_source) */
+	size_t struct_bytes; /* sizeof(bp_source) */
 	bp_read_fn *read;
-	void (*close)(void *user);  /* NULL, or called once by bp_archive_close; not where opening fails */
+	void (*close)(void *user); /* NULL, or called once by bp_archive_close; not where opening fails */
 	void *user;
-	uint64_t bytes;             /* of the archive */
+	uint64_t bytes; /* of the archive */
 } bp_source;
 
 /* The same through callbacks: an engine's own file system, a browser. *source is copied. BP_ERROR_ARGUMENT for a bad struct_bytes. */
@@ -155,7 +156,7 @@ typedef struct bp_layer {
 	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) over valid cells and channels, e decoded, b measured */
 	double cube_root_rmse;   /* rms of cbrt(b cos) - cbrt(e cos), cos the smaller of the two cosines at the cell's lower corner */
 	double largest_relative; /* largest |e - b|/(b + 1e-2) */
-	double seen_log_rmse;    /* log_rmse over the valid cells that do not lie wholly below the horizon only; of float's precision */
+	double seen_log_rmse; /* log_rmse over the valid cells that do not lie wholly below the horizon only; of float's precision */
 } bp_layer;
 
 /* One section of a record. */
@@ -164,7 +165,7 @@ typedef struct bp_section {
 	uint32_t layer;                /* the first layer that needs it */
 	uint32_t flags;                /* bit 0: required, bit 1: colour only, bits 2, 3, 4: for channel R, G, B alone */
 	uint32_t bytes;
-	double error;                  /* its own error figure, or NaN */
+	double error; /* its own error figure, or NaN */
 } bp_section;
 
 /*
@@ -173,30 +174,30 @@ typedef struct bp_section {
  * channels, over some 65,000 cells: a summary, which decoding does not use.
  */
 typedef struct bp_channel {
-	double diffuse;      /* 1/sr */
-	double specular;     /* a ratio: x is in 1/sr */
-	double rejected;     /* share of the valid cells that the regression gave no weight */
+	double diffuse;  /* 1/sr */
+	double specular; /* a ratio: x is in 1/sr */
+	double rejected; /* share of the valid cells that the regression gave no weight */
 	uint32_t iterations;
-	uint32_t converged;  /* 1 or 0 */
+	uint32_t converged; /* 1 or 0 */
 } bp_channel;
 
 /* What a record's head says of all of it. The caller sets struct_bytes; later versions may append members. */
 typedef struct bp_material_info {
-	size_t struct_bytes;       /* sizeof(bp_material_info), set by the caller */
+	size_t struct_bytes; /* sizeof(bp_material_info), set by the caller */
 	char name[BP_NAME_BYTES_MAX + 1];
-	uint32_t profile;          /* 1: paper, 2: spectral */
-	uint32_t codec_version;    /* of the encoder; 0: layers have been dropped since */
+	uint32_t profile;                 /* 1: paper, 2: spectral */
+	uint32_t codec_version;           /* of the encoder; 0: layers have been dropped since */
 	uint32_t theta_h, theta_d, phi_d; /* cells of the lattice */
 	uint32_t head_bytes, record_bytes;
-	uint64_t record_offset;    /* in the file */
-	bp_channel channels[3];    /* R, G, B */
-	uint32_t layer_count;      /* up to BP_LAYERS_MAX: bp_archive_layers */
-	uint32_t section_count;    /* up to BP_SECTIONS_MAX: bp_archive_sections */
-	uint32_t left_out;         /* pairs that are independent and not stored: bit 0 c_hd, bit 1 c_hphi, bit 2 all c_dphi|h */
-	uint32_t effort;           /* options it was made with */
+	uint64_t record_offset; /* in the file */
+	bp_channel channels[3]; /* R, G, B */
+	uint32_t layer_count;   /* up to BP_LAYERS_MAX: bp_archive_layers */
+	uint32_t section_count; /* up to BP_SECTIONS_MAX: bp_archive_sections */
+	uint32_t left_out;      /* pairs that are independent and not stored: bit 0 c_hd, bit 1 c_hphi, bit 2 all c_dphi|h */
+	uint32_t effort;        /* options it was made with */
 	uint32_t budget_bytes;
-	double max_error;          /* 0: a budget was asked for */
-	uint64_t source_bytes;     /* of the measured file */
+	double max_error;      /* 0: a budget was asked for */
+	uint64_t source_bytes; /* of the measured file */
 	uint8_t source_sha256[32];
 	uint64_t source_nonfinite; /* its cells that were NaN or infinite */
 	double horizon_limit;      /* the lowest cosine at which anything was measured, -1 to 0 */
@@ -213,16 +214,17 @@ BP_API bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_m
  * The layers, or the sections, of material `index`, in their order: fills at most `capacity` elements of element_bytes =
  * sizeof(bp_layer) or sizeof(bp_section) each, and sets *count (NULL is allowed) to how many there are. Reads as bp_archive_info does.
  */
-BP_API bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_layer *layers, uint32_t capacity,
-                            uint32_t *count, bp_error *error);
-BP_API bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_section *sections, uint32_t capacity,
-                              uint32_t *count, bp_error *error);
+BP_API bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_layer *layers,
+                                   uint32_t capacity, uint32_t *count, bp_error *error);
+BP_API bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_section *sections,
+                                     uint32_t capacity, uint32_t *count, bp_error *error);
 
 /*
  * The whole record of material `index`, checked: *record is freed with bp_free. What bp_writer_add takes, so that a record goes
  * from archive to archive without being packed again.
  */
-BP_API bp_status bp_archive_record(const bp_archive *archive, uint64_t index, uint8_t **record, size_t *record_bytes, bp_error *error);
+BP_API bp_status bp_archive_record(const bp_archive *archive, uint64_t index, uint8_t **record, size_t *record_bytes,
+                                   bp_error *error);
 
 /* ---- Decoded tables ---- */
 
@@ -241,11 +243,11 @@ typedef enum bp_layout { BP_LAYOUT_PLANES = 0, BP_LAYOUT_INTERLEAVED = 1 } bp_la
 
 /* What to decode, and how to lay it out. Zeroed but for struct_bytes: the whole record, planes of float, -1 below the horizon. */
 typedef struct bp_table_options {
-	size_t struct_bytes;  /* sizeof(bp_table_options) */
-	double max_log_rmse;  /* as in bp_load_options */
+	size_t struct_bytes; /* sizeof(bp_table_options) */
+	double max_log_rmse; /* as in bp_load_options */
 	bp_number number;
 	bp_layout layout;
-	int continued;        /* 0: -1 where a cell lies below the horizon, beyond anything that was measured (bp_material_info's horizon_limit), as in
+	int continued; /* 0: -1 where a cell lies below the horizon, beyond anything that was measured (bp_material_info's horizon_limit), as in
 	                         extracted files; 1: the model's smooth continuation there */
 } bp_table_options;
 
@@ -258,8 +260,8 @@ BP_API size_t bp_table_bytes(uint32_t theta_h, uint32_t theta_d, uint32_t phi_d,
  * is rounded once more (bp_form). After a failure the values are unspecified. Needs some 17 bytes per cell while it works.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, number, layout, continued, max_log_rmse, bytes), and those of bp_material_load.
  */
-BP_API bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values, size_t bytes,
-                           bp_error *error);
+BP_API bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values,
+                                  size_t bytes, bp_error *error);
 
 /* One thing that is wrong with an archive. */
 typedef struct bp_problem {
@@ -309,8 +311,9 @@ typedef struct bp_material bp_material;
 /* How a material lies in memory; bytes for a MERL lattice, in RGB / as mean. */
 typedef enum bp_form {
 	BP_FORM_EXPANDED = 0, /* 16 bits per value, relative error at most 2^-11 of the decoded value; 8.8 MB / 2.9 MB */
-	BP_FORM_COMPACT = 1,  /* 8 bits per value, shared scales and colours: some 0.001 in log RMSE more, 0.01 where channels end at 0; 2.6 MB / 2.0 MB */
-	BP_FORM_PREVIEW = 2   /* expanded, but only every second value along each axis, each where it stands, and quicker to load: for a
+	BP_FORM_COMPACT =
+		1, /* 8 bits per value, shared scales and colours: some 0.001 in log RMSE more, 0.01 where channels end at 0; 2.6 MB / 2.0 MB */
+	BP_FORM_PREVIEW = 2 /* expanded, but only every second value along each axis, each where it stands, and quicker to load: for a
 	                         look, with the first layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an
 	                         extent of the lattice is odd, all values are loaded */
 } bp_form;
@@ -318,8 +321,9 @@ typedef enum bp_form {
 typedef enum bp_colour {
 	BP_COLOUR_RGB = 0,
 	BP_COLOUR_MEAN = 1, /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
-	BP_COLOUR_R = 2,    /* one channel, given back in all three. Of profile 1 only its sections are read, about a third; records of */
-	BP_COLOUR_G = 3,    /* other profiles do not keep channels apart: BP_ERROR_UNSUPPORTED */
+	BP_COLOUR_R =
+		2, /* one channel, given back in all three. Of profile 1 only its sections are read, about a third; records of */
+	BP_COLOUR_G = 3, /* other profiles do not keep channels apart: BP_ERROR_UNSUPPORTED */
 	BP_COLOUR_B = 4
 } bp_colour;
 
@@ -335,14 +339,16 @@ typedef struct bp_allocator {
 
 /* What to load. Zeroed but for struct_bytes it asks for the whole record, in RGB, expanded, without sampling. */
 typedef struct bp_load_options {
-	size_t struct_bytes;  /* sizeof(bp_load_options) */
-	double max_log_rmse;  /* > 0: the fewest layers whose seen_log_rmse is at most this, all when none is; 0: all */
+	size_t struct_bytes; /* sizeof(bp_load_options) */
+	double max_log_rmse; /* > 0: the fewest layers whose seen_log_rmse is at most this, all when none is; 0: all */
 	bp_form form;
 	bp_colour colour;
-	int sampling;         /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */
-	const bp_allocator *allocator; /* NULL: malloc. Copied; all that bp_loaded counts in memory_bytes comes from it, and what is needed
+	int sampling; /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */
+	const bp_allocator
+		*allocator; /* NULL: malloc. Copied; all that bp_loaded counts in memory_bytes comes from it, and what is needed
 	                                  only while loading from malloc */
-	size_t max_memory_bytes; /* refuse, with BP_ERROR_LIMIT, a material that may need more while it is loaded: 24 bytes per cell and 1 MB, 36 MB
+	size_t
+		max_memory_bytes; /* refuse, with BP_ERROR_LIMIT, a material that may need more while it is loaded: 24 bytes per cell and 1 MB, 36 MB
 	                            for MERL's lattice. 0: twice that lattice's need, 72 MB; an archive's few bytes may ask for gigabytes */
 } bp_load_options;
 
@@ -367,7 +373,7 @@ typedef struct bp_loaded {
  * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
  */
 BP_API bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out,
-                           bp_error *error);
+                                  bp_error *error);
 BP_API void bp_material_free(bp_material *material); /* NULL is allowed */
 
 /* Fills *loaded; BP_ERROR_ARGUMENT when struct_bytes is not that of a version of this header. */
@@ -383,8 +389,8 @@ BP_API void bp_material_nearest(const bp_material *material, const float wi[3], 
  * bp_material_evaluate for `count` pairs in separate arrays of components: wi[0] holds the x of every wi, and so on.
  * The same values to the bit, several times faster from some dozens on. Outputs must not overlap anything else.
  */
-BP_API void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
-                                float *const rgb[3]);
+BP_API void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3],
+                                       const float *const wo[3], float *const rgb[3]);
 
 /*
  * Draws wi for wo, nearly in proportion to f cos theta_i, from three independent uniform numbers in [0, 1).
@@ -411,9 +417,10 @@ BP_API void bp_material_albedo(const bp_material *material, float theta_o, float
  * bp_material_sample and bp_material_pdf for `count` directions or pairs in separate arrays of components, as in
  * bp_material_evaluate_batch; the same values to the bit. Outputs must not overlap anything else.
  */
-BP_API void bp_material_sample_batch(const bp_material *material, size_t count, const float *const wo[3], const float *const u[3], float *const wi[3],
-                              float *pdf);
-BP_API void bp_material_pdf_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3], float *pdf);
+BP_API void bp_material_sample_batch(const bp_material *material, size_t count, const float *const wo[3], const float *const u[3],
+                                     float *const wi[3], float *pdf);
+BP_API void bp_material_pdf_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
+                                  float *pdf);
 
 /*
  * The albedo as a table over the cosine: rgb[3 n + c] is bp_material_albedo where cos theta_o = (n + 1/2)/count. Renderers on
@@ -430,11 +437,11 @@ typedef struct bp_measured {
 	uint32_t theta_h, theta_d, phi_d; /* cells along each axis: 4 to 1024 each, at most 2^24 in all */
 	bp_number number;                 /* BP_NUMBER_FLOAT or BP_NUMBER_DOUBLE */
 	bp_layout layout;
-	const void *values;               /* 3 per cell, R G B, of its centre (see bp_material), in `layout` */
-	const uint8_t *mask;              /* NULL, or per cell, 0: not measured */
-	double scale[3];                  /* times a value this is 1/sr; all 0: 1. MERL files: 1/1500, 1.15/1500, 1.66/1500 */
-	uint64_t source_bytes;            /* of the file that it comes from; recorded, 0: none */
-	uint8_t source_sha256[32];        /* of that file; recorded, zeros: none */
+	const void *values;        /* 3 per cell, R G B, of its centre (see bp_material), in `layout` */
+	const uint8_t *mask;       /* NULL, or per cell, 0: not measured */
+	double scale[3];           /* times a value this is 1/sr; all 0: 1. MERL files: 1/1500, 1.15/1500, 1.66/1500 */
+	uint64_t source_bytes;     /* of the file that it comes from; recorded, 0: none */
+	uint8_t source_sha256[32]; /* of that file; recorded, zeros: none */
 } bp_measured;
 
 /*
@@ -445,10 +452,11 @@ typedef int bp_progress_fn(void *user, double share);
 
 /* How to pack: what `brdfpack build` has as options. Zeroed but for struct_bytes: its defaults. */
 typedef struct bp_pack_options {
-	size_t struct_bytes;      /* sizeof(bp_pack_options) */
-	uint32_t profile;         /* 1: paper, 2 or 0: spectral */
-	uint32_t budget_bytes;    /* largest record, 1000 to 4,000,000; 0: 60,400 */
-	double max_error;         /* > 0, 1e-6 to 10: instead, the smallest record whose log RMSE is at most this; a budget must not be given */
+	size_t struct_bytes;   /* sizeof(bp_pack_options) */
+	uint32_t profile;      /* 1: paper, 2 or 0: spectral */
+	uint32_t budget_bytes; /* largest record, 1000 to 4,000,000; 0: 60,400 */
+	double
+		max_error; /* > 0, 1e-6 to 10: instead, the smallest record whose log RMSE is at most this; a budget must not be given */
 	uint32_t effort;          /* 1 to 9; 0: 5 */
 	bp_progress_fn *progress; /* NULL: none */
 	void *user;               /* its first argument */
@@ -462,11 +470,12 @@ typedef struct bp_pack_options {
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an option, the name), BP_ERROR_LIMIT (the extents, or a budget or bound that cannot be
  * kept), BP_ERROR_BAD_INPUT (no valid cell), BP_ERROR_CANCELLED, BP_ERROR_MEMORY.
  */
-BP_API bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_options *options, uint8_t **record, size_t *record_bytes,
-                  bp_error *error);
+BP_API bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_options *options, uint8_t **record,
+                         size_t *record_bytes, bp_error *error);
 
 /* A copy of a record under another name, freed with bp_free. The record is checked as bp_writer_add does. */
-BP_API bp_status bp_record_rename(const uint8_t *record, size_t record_bytes, const char *name, uint8_t **out, size_t *out_bytes, bp_error *error);
+BP_API bp_status bp_record_rename(const uint8_t *record, size_t record_bytes, const char *name, uint8_t **out, size_t *out_bytes,
+                                  bp_error *error);
 
 /* ---- Writing archives ---- */
 

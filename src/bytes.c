@@ -8,13 +8,10 @@
 
 struct byte_reader byte_reader_over(const void *bytes, size_t count)
 {
-	return (struct byte_reader){ .bytes = bytes, .count = count };
+	return (struct byte_reader){.bytes = bytes, .count = count};
 }
 
-size_t byte_reader_left(const struct byte_reader *reader)
-{
-	return reader->count - reader->at;
-}
+size_t byte_reader_left(const struct byte_reader *reader) { return reader->count - reader->at; }
 
 const uint8_t *read_span(struct byte_reader *reader, size_t count)
 {
@@ -140,7 +137,7 @@ void write_f64(struct byte_buffer *buffer, double value)
 void byte_buffer_free(struct byte_buffer *buffer)
 {
 	free(buffer->bytes);
-	*buffer = (struct byte_buffer){ 0 };
+	*buffer = (struct byte_buffer){0};
 }
 
 uint32_t bytes_crc32_more(uint32_t crc, const void *bytes, size_t count)
@@ -162,10 +159,7 @@ uint32_t bytes_crc32_more(uint32_t crc, const void *bytes, size_t count)
 #endif
 }
 
-uint32_t bytes_crc32(const void *bytes, size_t count)
-{
-	return bytes_crc32_more(0, count ? bytes : (const void *)"", count);
-}
+uint32_t bytes_crc32(const void *bytes, size_t count) { return bytes_crc32_more(0, count ? bytes : (const void *)"", count); }
 
 void store_u32(uint8_t *at, uint32_t value)
 {

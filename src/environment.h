@@ -16,9 +16,6 @@ static inline void environment_enter(fenv_t *before)
 	fesetenv(FE_DFL_ENV);
 }
 
-static inline void environment_leave(const fenv_t *before)
-{
-	fesetenv(before);
-}
+static inline void environment_leave(const fenv_t *before) { fesetenv(before); }
 
 #endif

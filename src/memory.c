@@ -17,10 +17,7 @@ void memory_prefer_huge(void *block, size_t bytes)
 		system_prefer_huge((void *)start, end - start);
 }
 
-static size_t alignment_for(size_t bytes)
-{
-	return bytes < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE;
-}
+static size_t alignment_for(size_t bytes) { return bytes < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE; }
 
 static void *alloc_aligned(size_t bytes, size_t alignment)
 {

@@ -33,7 +33,8 @@ static int open_unnamed(const char *target, mode_t mode)
 }
 
 /* Tries one short name after the other until `take` makes a file of it (0), or fails for another reason than that it is taken. */
-static bp_status name_find(struct output_file *out, int (*take)(struct output_file *, const char *, mode_t), mode_t mode, bp_error *error)
+static bp_status name_find(struct output_file *out, int (*take)(struct output_file *, const char *, mode_t), mode_t mode,
+                           bp_error *error)
 {
 	static atomic_uint serial; /* two writers of one process get two names */
 	char stem[OUTPUT_STEM_BYTES], name[2 * OUTPUT_STEM_BYTES];
@@ -160,7 +161,7 @@ static void likeness_keep(struct output_file *out)
 	mode = out->before.st_mode & MODE_BITS;
 	if (fchown(out->fd, out->before.st_uid, out->before.st_gid) != 0 && fchown(out->fd, (uid_t)-1, out->before.st_gid) != 0)
 		mode = (mode & ~(mode_t)070) | (mode & 07) << 3; /* what one group might do is not another's right */
-	(void)!fchmod(out->fd, mode); /* a file system without modes is legal */
+	(void)!fchmod(out->fd, mode);                        /* a file system without modes is legal */
 }
 
 static int file_close(struct output_file *out)
@@ -171,10 +172,7 @@ static int file_close(struct output_file *out)
 }
 
 /* Some file systems have nothing to sync, and say so. */
-static bool sync_means_nothing(int reason)
-{
-	return reason == EINVAL || reason == EOPNOTSUPP || reason == ENOSYS;
-}
+static bool sync_means_nothing(int reason) { return reason == EINVAL || reason == EOPNOTSUPP || reason == ENOSYS; }
 
 /* All bytes of one file to another. */
 static bp_status bytes_copy(int from, struct output_file *to, bp_error *error)
@@ -277,7 +275,8 @@ static void folder_sync(const char *target, bp_error *error)
 	const int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
 	if (fd < 0 || (fsync(fd) != 0 && errno != EINVAL))
 		error_set(error, BP_OK, BP_NO_OFFSET,
-		          "written, but its folder cannot be synced (%s): a power cut soon after may bring the old state back", strerror(errno));
+		          "written, but its folder cannot be synced (%s): a power cut soon after may bring the old state back",
+		          strerror(errno));
 	if (fd >= 0)
 		close(fd);
 	free(folder);

@@ -23,9 +23,9 @@ enum output_rule {
 };
 
 struct output_file {
-	int fd;             /* -1: closed */
-	char *target;       /* where it will appear, links resolved; malloc'ed */
-	char *temporary;    /* its name until then; NULL while it has none */
+	int fd;          /* -1: closed */
+	char *target;    /* where it will appear, links resolved; malloc'ed */
+	char *temporary; /* its name until then; NULL while it has none */
 	enum output_rule rule;
 	bool replaces;      /* a file was there when it was opened; */
 	struct stat before; /* its mode and owner */

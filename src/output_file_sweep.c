@@ -41,8 +41,8 @@ void output_file_sweep(const char *path, const void *magic, size_t magic_bytes)
 		unsigned number;
 		int end = 0;
 		if (strncmp(entry->d_name, stem, strlen(stem)) != 0 ||
-		    sscanf(entry->d_name + strlen(stem), "%ld-%u%n", &process, &number, &end) != 2 || entry->d_name[strlen(stem) + (size_t)end] ||
-		    process == (long)getpid())
+		    sscanf(entry->d_name + strlen(stem), "%ld-%u%n", &process, &number, &end) != 2 ||
+		    entry->d_name[strlen(stem) + (size_t)end] || process == (long)getpid())
 			continue;
 		char *file = output_path_beside(target, entry->d_name);
 		const int fd = file ? open(file, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK) : -1;

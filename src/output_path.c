@@ -28,10 +28,7 @@ char *output_path_beside(const char *target, const char *name)
 	return path;
 }
 
-char *output_path_folder(const char *target)
-{
-	return output_path_beside(target, folder_bytes(target) ? "" : ".");
-}
+char *output_path_folder(const char *target) { return output_path_beside(target, folder_bytes(target) ? "" : "."); }
 
 bp_status output_path_resolve(const char *path, char **out, bool *found, struct stat *about, bp_error *error)
 {

@@ -8,7 +8,8 @@ _Thread_local struct stage_clock *stage_clock_running;
 
 const char *stage_name(enum stage stage)
 {
-	static const char *const NAMES[STAGE_COUNT] = {"rest", "read", "checksum", "clean", "regression", "transform", "code", "measure"};
+	static const char *const NAMES[STAGE_COUNT] = {"rest",       "read",      "checksum", "clean",
+	                                               "regression", "transform", "code",     "measure"};
 	return NAMES[stage];
 }
 

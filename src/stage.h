@@ -39,9 +39,6 @@ extern _Thread_local struct stage_clock *stage_clock_running;
 enum stage stage_switch(enum stage stage);
 
 /* Returns the stage until now, for those that come back to it. */
-static inline enum stage stage_enter(enum stage stage)
-{
-	return stage_clock_running ? stage_switch(stage) : STAGE_REST;
-}
+static inline enum stage stage_enter(enum stage stage) { return stage_clock_running ? stage_switch(stage) : STAGE_REST; }
 
 #endif

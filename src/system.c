@@ -65,15 +65,9 @@ void *system_alloc(size_t bytes, size_t alignment)
 	return aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
 }
 
-void system_prefer_huge(void *start, size_t bytes)
-{
-	(void)start, (void)bytes;
-}
+void system_prefer_huge(void *start, size_t bytes) { (void)start, (void)bytes; }
 
-double system_thread_seconds(void)
-{
-	return (double)clock() / CLOCKS_PER_SEC;
-}
+double system_thread_seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 #else
 

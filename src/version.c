@@ -6,10 +6,7 @@
 #define TEXT_OF(number) #number
 #define TEXT(number) TEXT_OF(number)
 
-int bp_version(void)
-{
-	return BP_VERSION_NUMBER;
-}
+int bp_version(void) { return BP_VERSION_NUMBER; }
 
 const char *bp_version_text(void)
 {
@@ -17,7 +14,4 @@ const char *bp_version_text(void)
 	return TEXT(BP_VERSION_MAJOR) "." TEXT(BP_VERSION_MINOR) "." TEXT(BP_VERSION_PATCH);
 }
 
-void bp_free(void *block)
-{
-	free(block);
-}
+void bp_free(void *block) { free(block); }

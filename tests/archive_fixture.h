@@ -57,10 +57,10 @@ FIXTURE void fixture_head(struct record_head *head, const char *name)
 	strcpy(head->name, name);
 	head->profile = PROFILE_PAPER;
 	head->codec_version = 1;
-	head->dims = (struct lattice_dims){ 4, 5, 6 };
+	head->dims = (struct lattice_dims){4, 5, 6};
 	head->horizon_limit = -0.0625;
 	for (int c = 0; c < 3; c++)
-		head->colour[c] = (struct colour_fit){ 0.25 * (c + 1), 1.5 - c, 7u + (uint32_t)c, 1, 0.125 };
+		head->colour[c] = (struct colour_fit){0.25 * (c + 1), 1.5 - c, 7u + (uint32_t)c, 1, 0.125};
 	head->options = (struct fit_options){.profile = PROFILE_PAPER, .budget_bytes = 60400, .effort = 5};
 	head->source.bytes = 34992012;
 	for (int i = 0; i < SHA256_BYTES; i++)
@@ -72,16 +72,16 @@ FIXTURE void fixture_head(struct record_head *head, const char *name)
 /* A record of `layers` layers with two sections of `section_bytes` bytes each. */
 FIXTURE uint8_t *fixture_record(const char *name, uint32_t layers, size_t section_bytes, size_t *record_bytes)
 {
-	struct section_list sections = { 0 };
+	struct section_list sections = {0};
 	struct record_head head;
 	uint8_t *record = NULL;
 	fixture_head(&head, name);
 	head.layer_count = layers;
 	for (uint32_t l = 0; l < layers; l++) {
-		head.layers[l].fidelity = (struct fidelity){ 0.5 / (l + 1), 0.375 / (l + 1), 0.25 / (l + 1), 3.0 / (l + 1) };
+		head.layers[l].fidelity = (struct fidelity){0.5 / (l + 1), 0.375 / (l + 1), 0.25 / (l + 1), 3.0 / (l + 1)};
 		for (int s = 0; s < 2; s++) {
-			struct byte_buffer *bytes = section_add(&sections, SECTION_SLICES, 1, 1, l, s == 0 ? SECTION_REQUIRED : 0,
-			                                        s == 0 ? 0.125 : NAN);
+			struct byte_buffer *bytes =
+				section_add(&sections, SECTION_SLICES, 1, 1, l, s == 0 ? SECTION_REQUIRED : 0, s == 0 ? 0.125 : NAN);
 			for (size_t i = 0; i < section_bytes; i++)
 				write_u8(bytes, (uint8_t)(i * 31 + l * 5 + (size_t)s + (unsigned char)name[0]));
 		}
@@ -95,7 +95,7 @@ FIXTURE uint8_t *fixture_record(const char *name, uint32_t layers, size_t sectio
 FIXTURE void fixture_archive(const char *path, const char *const *names, size_t count, size_t section_bytes)
 {
 	struct archive_writer *writer = NULL;
-	bp_error error = { 0 };
+	bp_error error = {0};
 	assert_int_equal(archive_writer_open(path, &writer, &error), BP_OK);
 	for (size_t i = 0; i < count; i++) {
 		size_t bytes;

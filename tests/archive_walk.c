@@ -19,7 +19,8 @@ static void values_check(const float *value, int count)
 
 static void material_walk(const bp_material *material, struct walk_values *out)
 {
-	static const float directions[5][3] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, 0.8f, 0.6f}, {-0.48f, 0.64f, 0.6f}, {0.9999f, 0, 0.0141f}};
+	static const float directions[5][3] = {
+		{0, 0, 1}, {0.6f, 0, 0.8f}, {0, 0.8f, 0.6f}, {-0.48f, 0.64f, 0.6f}, {0.9999f, 0, 0.0141f}};
 	for (int i = 0; i < 4; i++) {
 		float rgb[3];
 		bp_material_evaluate(material, directions[i], directions[i + 1], out->rgb[i]);
@@ -38,14 +39,16 @@ static bool material_small(const bp_archive *archive, uint64_t m, char name[BP_N
 		return false;
 	if (bp_archive_find(archive, name, &found, NULL) == BP_OK && found != m)
 		abort();
-	return bp_archive_info(archive, m, &info, NULL) == BP_OK && (uint64_t)info.theta_h * info.theta_d * info.phi_d <= WALK_CELLS_MAX;
+	return bp_archive_info(archive, m, &info, NULL) == BP_OK &&
+	       (uint64_t)info.theta_h * info.theta_d * info.phi_d <= WALK_CELLS_MAX;
 }
 
 /* A path of this process's own, in memory where possible: recovery syncs what it writes. */
 static const char *scratch_path(char which)
 {
 	static char path[64];
-	snprintf(path, sizeof path, "%s/brdfpack-walk-%ld-%c", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid(), which);
+	snprintf(path, sizeof path, "%s/brdfpack-walk-%ld-%c", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid(),
+	         which);
 	return path;
 }
 
@@ -100,10 +103,12 @@ static uint32_t material_extract(const bp_archive *archive, uint64_t m)
 	leaf.count = 0;
 	if (archive_entry(archive, m, &leaf, &entry, NULL) != BP_OK || archive_entry_head(archive, &entry, &head, NULL) != BP_OK ||
 	    archive_entry_load(archive, &entry, &head, 0, &model, NULL) != BP_OK ||
-	    archive_entry_record(archive, &entry, &same, &record, NULL) != BP_OK || expansion_alloc(model->dims, &table, NULL) != BP_OK)
+	    archive_entry_record(archive, &entry, &same, &record, NULL) != BP_OK ||
+	    expansion_alloc(model->dims, &table, NULL) != BP_OK)
 		goto out;
 	below = malloc(lattice_cells(model->dims));
-	if (!below || lattice_below_horizon(model->dims, model->horizon_limit, below, NULL) != BP_OK || model_expand(model, 0, &table, NULL) != BP_OK)
+	if (!below || lattice_below_horizon(model->dims, model->horizon_limit, below, NULL) != BP_OK ||
+	    model_expand(model, 0, &table, NULL) != BP_OK)
 		goto out;
 	if (lattice_write_path(path, OUTPUT_REPLACE, &table, below, record, head.record_bytes, NULL) == BP_OK) {
 		crc = file_crc32(path);
@@ -139,9 +144,10 @@ static void material_copy(const bp_archive *archive, uint64_t m, const char *nam
 	if (bp_archive_record(archive, m, &record, &record_bytes, NULL) != BP_OK)
 		return;
 	if (bp_writer_create(&writer, NULL) != BP_OK || bp_writer_add(writer, record, record_bytes, NULL) != BP_OK ||
-	    bp_writer_save_memory(writer, &bytes, &count, NULL) != BP_OK || bp_archive_open_memory(bytes, count, &copy, NULL) != BP_OK ||
-	    bp_archive_find(copy, name, &index, NULL) != BP_OK || bp_archive_record(copy, index, &again, &again_bytes, NULL) != BP_OK ||
-	    again_bytes != record_bytes || memcmp(again, record, record_bytes) != 0)
+	    bp_writer_save_memory(writer, &bytes, &count, NULL) != BP_OK ||
+	    bp_archive_open_memory(bytes, count, &copy, NULL) != BP_OK || bp_archive_find(copy, name, &index, NULL) != BP_OK ||
+	    bp_archive_record(copy, index, &again, &again_bytes, NULL) != BP_OK || again_bytes != record_bytes ||
+	    memcmp(again, record, record_bytes) != 0)
 		abort();
 	bp_archive_close(copy);
 	bp_writer_free(writer);
@@ -150,7 +156,8 @@ static void material_copy(const bp_archive *archive, uint64_t m, const char *nam
 	bp_free(record);
 }
 
-bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned also, struct walk_values *seen, uint64_t *seen_count)
+bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned also, struct walk_values *seen,
+                       uint64_t *seen_count)
 {
 	bp_archive *archive = NULL;
 	bool small = true;
@@ -173,7 +180,9 @@ bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned
 		}
 		/* by name: its number is another one when others are lost */
 		const uint32_t way = bytes_crc32(values.name, strlen(values.name));
-		const bp_load_options options = {.struct_bytes = sizeof options, .form = (bp_form)(way % 2), .colour = (bp_colour)(way / 2 % 2),
+		const bp_load_options options = {.struct_bytes = sizeof options,
+		                                 .form = (bp_form)(way % 2),
+		                                 .colour = (bp_colour)(way / 2 % 2),
 		                                 .max_log_rmse = way % 3 == 0 ? 0.1 : 0};
 		if (bp_material_load(archive, m, &options, &material, NULL) != BP_OK)
 			continue;

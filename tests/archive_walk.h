@@ -18,8 +18,9 @@ struct walk_values {
 
 /* What is done beside: */
 enum {
-	WALK_LIST = 1,   /* every head is read and parsed, and all that `list` says of up to `most` materials printed */
-	WALK_EXTRACT = 2 /* each material that loads is written as a file that carries its record, as by `extract`, and copied by the public calls */
+	WALK_LIST = 1, /* every head is read and parsed, and all that `list` says of up to `most` materials printed */
+	WALK_EXTRACT =
+		2 /* each material that loads is written as a file that carries its record, as by `extract`, and copied by the public calls */
 };
 
 /*
@@ -28,7 +29,8 @@ enum {
  * negative, NaN or infinite. Returns what verification said, or why it did not open. seen (may be NULL) receives up to `most`
  * materials, *seen_count of them.
  */
-bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned also, struct walk_values *seen, uint64_t *seen_count);
+bp_status archive_walk(const char *path, uint64_t first, uint64_t most, unsigned also, struct walk_values *seen,
+                       uint64_t *seen_count);
 /*
  * What `recover` does, and a walk through what it saved, `most` materials from `first` on: *saved says how many and what was
  * lost. Aborts when the result does not verify, or holds another number of materials. BP_ERROR_* where nothing was saved.

@@ -43,7 +43,8 @@ int main(int argc, char **argv)
 	}
 	info.struct_bytes = sizeof info;
 	for (uint64_t i = 0; i < bp_archive_count(archive); i++)
-		if (bp_archive_info(archive, i, &info, &error) != BP_OK || info.record_bytes == 0 || !material_works(archive, i, &error)) {
+		if (bp_archive_info(archive, i, &info, &error) != BP_OK || info.record_bytes == 0 ||
+		    !material_works(archive, i, &error)) {
 			fprintf(stderr, "%s: %s\n", argv[1], error.message);
 			return 1;
 		}

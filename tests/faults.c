@@ -31,7 +31,7 @@ struct subject {
 	struct walk_values *seen; /* of the intact archive, by name order */
 	uint64_t seen_count;
 	uint64_t *offset; /* of each material's record */
-	int fd; /* of the damaged copy */
+	int fd;           /* of the damaged copy */
 	char path[64];
 	size_t extract_every, rescue_every;
 };
@@ -219,7 +219,8 @@ static void mutate_many(struct subject *s, size_t n, uint64_t seed)
 		if (ftruncate(s->fd, 0) != 0 || pwrite(s->fd, copy, count, 0) != (ssize_t)count)
 			fail("pwrite", i);
 		/* the first ones that were hit, and one of four times any */
-		damaged_walk(s, random_below(4) ? material_at(s, at) : random_below(s->seen_count), 3, mended ? DAMAGE_MENDED : DAMAGE_ANY, i / 2, i);
+		damaged_walk(s, random_below(4) ? material_at(s, at) : random_below(s->seen_count), 3,
+		             mended ? DAMAGE_MENDED : DAMAGE_ANY, i / 2, i);
 	}
 	free(copy);
 	printf("mutate: %zu mutations of %zu bytes, %zu changed nothing\n", n, s->count, same);
@@ -248,7 +249,8 @@ static void load_many(const char *path, size_t n)
 	bp_archive_close(archive);
 	if (after.uordblks > before.uordblks + 1024 || after.hblkhd > before.hblkhd)
 		fail("memory grew", after.uordblks - before.uordblks);
-	printf("load: %zu loads and frees, %zd bytes more in use at the end than after a tenth\n", n, (ssize_t)(after.uordblks - before.uordblks));
+	printf("load: %zu loads and frees, %zd bytes more in use at the end than after a tenth\n", n,
+	       (ssize_t)(after.uordblks - before.uordblks));
 }
 
 struct thread_job {
@@ -267,7 +269,8 @@ static void *thread_run(void *user)
 		float rgb[3], shared[3], drawn[3];
 		char name[BP_NAME_BYTES_MAX + 1];
 		const uint64_t m = (i + job->number) % bp_archive_count(job->archive);
-		if (bp_archive_name(job->archive, m, name, NULL) != BP_OK || bp_material_load(job->archive, m, &options, &material, NULL) != BP_OK)
+		if (bp_archive_name(job->archive, m, name, NULL) != BP_OK ||
+		    bp_material_load(job->archive, m, &options, &material, NULL) != BP_OK)
 			fail("a thread cannot load", i);
 		bp_material_evaluate(material, wi, wo, rgb);
 		bp_material_evaluate(job->shared, wi, wo, shared);

@@ -50,9 +50,10 @@ static bool lattice_extracted(const struct record_head *head, const uint8_t *rec
 	struct expansion table = {0};
 	struct model *model = NULL;
 	uint8_t *below = malloc(cells);
-	bool made = record_decode_whole(head, 0, record, &model, NULL) == BP_OK && expansion_alloc(head->dims, &table, NULL) == BP_OK &&
-	            model_expand(model, 0, &table, NULL) == BP_OK &&
-	            lattice_below_horizon(head->dims, head->horizon_limit, below, NULL) == BP_OK && lattice_alloc(head->dims, out, NULL) == BP_OK;
+	bool made = record_decode_whole(head, 0, record, &model, NULL) == BP_OK &&
+	            expansion_alloc(head->dims, &table, NULL) == BP_OK && model_expand(model, 0, &table, NULL) == BP_OK &&
+	            lattice_below_horizon(head->dims, head->horizon_limit, below, NULL) == BP_OK &&
+	            lattice_alloc(head->dims, out, NULL) == BP_OK;
 	for (int c = 0; made && c < 3; c++) {
 		for (size_t i = 0; i < cells; i++) {
 			const double value = table.unit * (double)table.rgb[c][i] / MERL_SCALE[c];

@@ -15,7 +15,8 @@ static void glossy_lattice_make(struct lattice_dims dims, double unit, struct la
 			for (uint32_t k = 0; k < dims.phi_d; k++)
 				for (int c = 0; c < 3; c++)
 					out->rgb[c][lattice_index(dims, i, j, k)] =
-						unit * (0.1 * (c + 1) + 3 * exp(-0.02 * i * i) * (1 + 0.01 * j * cos(2 * M_PI * k / dims.phi_d) + 0.02 * c * j));
+						unit *
+						(0.1 * (c + 1) + 3 * exp(-0.02 * i * i) * (1 + 0.01 * j * cos(2 * M_PI * k / dims.phi_d) + 0.02 * c * j));
 	lattice_validate(out);
 }
 

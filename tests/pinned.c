@@ -49,13 +49,14 @@ static void row_print(FILE *out, const struct lattice *lattice, const char *name
 	size_t bytes;
 	bp_error error;
 
-	if (record_encode(lattice, name, &source, &options, &record, &bytes, &head, &error) || record_decode_whole(&head, 0, record, &model, &error) ||
-	    expansion_alloc(lattice->dims, &table, &error) || model_expand(model, 0, &table, &error)) {
+	if (record_encode(lattice, name, &source, &options, &record, &bytes, &head, &error) ||
+	    record_decode_whole(&head, 0, record, &model, &error) || expansion_alloc(lattice->dims, &table, &error) ||
+	    model_expand(model, 0, &table, &error)) {
 		fprintf(stderr, "%s: %s\n", name, error.message);
 		exit(1);
 	}
-	fprintf(out, "%s\t%s\t%u\t%zu\t%.5f\t%08x\n", name, PROFILES[p].name, budget, bytes, head.layers[head.layer_count - 1].fidelity.log_rmse,
-	        values_crc32(&table));
+	fprintf(out, "%s\t%s\t%u\t%zu\t%.5f\t%08x\n", name, PROFILES[p].name, budget, bytes,
+	        head.layers[head.layer_count - 1].fidelity.log_rmse, values_crc32(&table));
 	expansion_free(&table);
 	model_free(model);
 	free(record);
@@ -145,11 +146,12 @@ static int rows_compare(FILE *pinned, char (*line)[LINE], size_t count)
 		}
 		at++;
 		if (now.bytes > was.bytes || now.error > was.error) {
-			printf("%s: worse: %lu bytes, log RMSE %.5f; pinned: %lu, %.5f\n", now.key, now.bytes, now.error, was.bytes, was.error);
+			printf("%s: worse: %lu bytes, log RMSE %.5f; pinned: %lu, %.5f\n", now.key, now.bytes, now.error, was.bytes,
+			       was.error);
 			worse++;
 		} else if (now.bytes != was.bytes || now.error != was.error || now.crc != was.crc) {
-			printf("%s: other: %lu bytes, log RMSE %.5f, values %08x; pinned: %lu, %.5f, %08x\n", now.key, now.bytes, now.error, now.crc,
-			       was.bytes, was.error, was.crc);
+			printf("%s: other: %lu bytes, log RMSE %.5f, values %08x; pinned: %lu, %.5f, %08x\n", now.key, now.bytes, now.error,
+			       now.crc, was.bytes, was.error, was.crc);
 			other++;
 		}
 	}
@@ -179,7 +181,8 @@ int main(int argc, char **argv)
 	char(*line)[LINE] = rows_make(cores < 1 ? 1 : cores > 16 ? 16 : (size_t)cores, &count);
 	int code = 0;
 	if (writing) {
-		fprintf(file, "# demo set, MERL's lattice; made by `make pinned PINNED_FLAGS=--write`\nmaterial\tprofile\tbudget\tbytes\tlog RMSE\tvalues\n");
+		fprintf(file, "# demo set, MERL's lattice; made by `make pinned "
+		              "PINNED_FLAGS=--write`\nmaterial\tprofile\tbudget\tbytes\tlog RMSE\tvalues\n");
 		for (size_t n = 0; n < count; n++)
 			fputs(line[n], file);
 	} else {

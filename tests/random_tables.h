@@ -13,7 +13,8 @@ static double uniform(void)
 	return (double)(state >> 11) * 0x1p-53;
 }
 
-static const struct lattice_dims DIMS[] = {{4, 4, 4}, {5, 7, 9}, {15, 16, 5}, {16, 15, 6}, {31, 33, 7}, {29, 18, 33}, {90, 30, 20}, {4, 60, 17}};
+static const struct lattice_dims DIMS[] = {{4, 4, 4},   {5, 7, 9},    {15, 16, 5},  {16, 15, 6},
+                                           {31, 33, 7}, {29, 18, 33}, {90, 30, 20}, {4, 60, 17}};
 enum { DIMS_COUNT = sizeof DIMS / sizeof *DIMS };
 
 #endif

@@ -147,10 +147,7 @@ ORACLE struct oracle slow_fit_shaken(const double *x_in, const double *y_in, siz
 	return out;
 }
 
-ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n)
-{
-	return slow_fit_shaken(x, y, n, 0, NULL);
-}
+ORACLE struct oracle slow_fit(const double *x, const double *y, size_t n) { return slow_fit_shaken(x, y, n, 0, NULL); }
 
 /*
  * How far a line is from the oracle's at either end of x, relative to the larger of that one's values there: where x is

@@ -53,10 +53,7 @@ ORACLE void outgoing(double degrees, float wo[3])
 }
 
 /* The largest theta_h with wi above the horizon. */
-ORACLE double horizon(double theta_o, double phi)
-{
-	return M_PI_4 + 0.5 * atan2(sin(theta_o) * cos(phi), cos(theta_o));
-}
+ORACLE double horizon(double theta_o, double phi) { return M_PI_4 + 0.5 * atan2(sin(theta_o) * cos(phi), cos(theta_o)); }
 
 /* wi of the half-angle (theta_h, phi) in the frame of wo; returns dw_i/dw_h = 4 (wo.h) */
 ORACLE double reflect(double theta_o, double theta_h, double phi, float wi[3])
@@ -70,7 +67,8 @@ ORACLE double reflect(double theta_o, double theta_h, double phi, float wi[3])
 }
 
 /* Integral of the density over theta_h from a to b (as shares of its range, squared) and phi from c to d. */
-ORACLE double integrate(const struct sampler *s, double degrees, double a, double b, double c, double d, int steps_h, int steps_phi)
+ORACLE double integrate(const struct sampler *s, double degrees, double a, double b, double c, double d, int steps_h,
+                        int steps_phi)
 {
 	double theta_o = degrees * M_PI / 180, sum = 0;
 	float wo[3], wi[3];
@@ -139,8 +137,8 @@ ORACLE double chi_square_probability(const struct sampler *drawn, const struct s
 	}
 	for (int a = 0; a < CHI_PHI; a++)
 		for (int b = 0; b < CHI_H; b++)
-			expected[a * CHI_H + b] = SAMPLES * integrate(s, degrees, (double)b / CHI_H, (double)(b + 1) / CHI_H, 2 * M_PI * a / CHI_PHI,
-			                                              2 * M_PI * (a + 1) / CHI_PHI, 60, 32);
+			expected[a * CHI_H + b] = SAMPLES * integrate(s, degrees, (double)b / CHI_H, (double)(b + 1) / CHI_H,
+			                                              2 * M_PI * a / CHI_PHI, 2 * M_PI * (a + 1) / CHI_PHI, 60, 32);
 	for (int n = 0; n < CHI_BINS; n++)
 		if (expected[n] < 8) {
 			rest += expected[n];

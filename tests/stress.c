@@ -51,7 +51,8 @@ static void case_run(struct trial *trial, bool values_only, struct packed_table 
 	if (packed->status) {
 		trial->figures->refused++;
 		/* Nothing to pack, or a budget that the message says is too small; anything else is a fault. */
-		if (packed->status != (trial->lattice->valid_count ? BP_ERROR_LIMIT : BP_ERROR_BAD_INPUT) || trial->options.budget_bytes > 60000)
+		if (packed->status != (trial->lattice->valid_count ? BP_ERROR_LIMIT : BP_ERROR_BAD_INPUT) ||
+		    trial->options.budget_bytes > 60000)
 			note(trial, WRONG, trial->lattice->valid_count != 0);
 		return;
 	}
@@ -90,13 +91,19 @@ static void kind_run(const struct plan *plan, const struct stress_kind *kind, st
 					continue; /* one of each kind is enough at this size */
 				if (plan->quick && lattice_cells(dims) > 1000 && v)
 					continue;
-				snprintf(name, sizeof name, "%04zu-%s-%u-%ux%ux%u-seed-%u", count, kind->name, v, dims.theta_h, dims.theta_d, dims.phi_d, seed);
+				snprintf(name, sizeof name, "%04zu-%s-%u-%ux%ux%u-seed-%u", count, kind->name, v, dims.theta_h, dims.theta_d,
+				         dims.phi_d, seed);
 				if (stress_case_make(kind, v, seed, dims, &lattice, NULL) != BP_OK)
 					exit(1);
 				struct trial trial = {
-					.subject = plan->subject, .options = {plan->subject->profile, plan->budget, 0, 5},
-					.lattice = &lattice, .kind = kind->name, .name = name, .figures = figures,
-					.generations = plan->generations, .verbose = plan->verbose,
+					.subject = plan->subject,
+					.options = {plan->subject->profile, plan->budget, 0, 5},
+					.lattice = &lattice,
+					.kind = kind->name,
+					.name = name,
+					.figures = figures,
+					.generations = plan->generations,
+					.verbose = plan->verbose,
 				};
 				case_run(&trial, plan->values_only, &packed[count++]);
 				last = trial;
@@ -127,7 +134,8 @@ static uint32_t kind_bit(const char *name)
 static bool row_print(const struct plan *plan, const char *kind, const struct figures *figures)
 {
 	bool within = true;
-	printf("%s\t%u\t%s\t%u\t%u\t%u\t%u", plan->subject->name, plan->budget, kind, figures->cases, figures->packed, figures->refused, figures->carried);
+	printf("%s\t%u\t%s\t%u\t%u\t%u\t%u", plan->subject->name, plan->budget, kind, figures->cases, figures->packed,
+	       figures->refused, figures->carried);
 	for (int p = 0; p < PROPERTY_COUNT; p++) {
 		const bool over = !(figures->worst[p] <= limit_of(plan->subject, plan->budget, kind, (enum property)p));
 		printf("\t%.3g%s", figures->worst[p], over ? "!" : "");
@@ -169,8 +177,14 @@ int main(int argc, char **argv)
 		case 'm': plan.merl = true; break;
 		case 'q': plan.quick = true; break;
 		case 'v': plan.verbose = true; break;
-		case 'd': dump = fopen(optarg, "wb"); plan.values_only = true; break;
-		case 'c': compared = fopen(optarg, "rb"); plan.values_only = true; break;
+		case 'd':
+			dump = fopen(optarg, "wb");
+			plan.values_only = true;
+			break;
+		case 'c':
+			compared = fopen(optarg, "rb");
+			plan.values_only = true;
+			break;
 		default: return 2;
 		}
 	if (plan.values_only && !dump && !compared) {

@@ -27,7 +27,8 @@ struct cell {
 
 static struct cell cell_at(struct lattice_dims d, size_t n)
 {
-	struct cell c = {.k = (uint32_t)(n % d.phi_d), .j = (uint32_t)(n / d.phi_d % d.theta_d), .i = (uint32_t)(n / d.phi_d / d.theta_d)};
+	struct cell c = {
+		.k = (uint32_t)(n % d.phi_d), .j = (uint32_t)(n / d.phi_d % d.theta_d), .i = (uint32_t)(n / d.phi_d / d.theta_d)};
 	c.h = (double)c.i / d.theta_h;
 	c.d = (double)c.j / d.theta_d;
 	c.p = (double)c.k / d.phi_d;
@@ -35,8 +36,8 @@ static struct cell cell_at(struct lattice_dims d, size_t n)
 }
 
 /* Declares `at` and runs over all cells; n is the cell's index. */
-#define FOR_EACH_CELL(lattice, n, at)                                                                               \
-	struct cell at = cell_at((lattice)->dims, 0);                                                               \
+#define FOR_EACH_CELL(lattice, n, at) \
+	struct cell at = cell_at((lattice)->dims, 0); \
 	for (size_t n = 0; n < lattice_cells((lattice)->dims); at = cell_at((lattice)->dims, ++n))
 
 static void grey(struct lattice *lattice, size_t n, double value)
@@ -233,8 +234,8 @@ static void make_noise(struct lattice *lattice, unsigned variant, uint64_t seed)
 		for (size_t n = 0; n < lattice_cells(lattice->dims); n++) {
 			double *value = &lattice->rgb[p][n];
 			*value = variant == 0   ? fabs(*value * (1 + stress_normal(&random))) /* 100 % */
-			         : variant == 1 ? *value * exp(3 * stress_normal(&random))   /* heavy tails */
-			                        : stress_uniform(&random);                   /* nothing but noise */
+			         : variant == 1 ? *value * exp(3 * stress_normal(&random))    /* heavy tails */
+			                        : stress_uniform(&random);                    /* nothing but noise */
 		}
 }
 

@@ -67,7 +67,8 @@ static void check_scale(const struct trial *trial, const struct packed_table *ba
 			if (packed.status)
 				note(trial, WRONG, 1);
 			for (size_t c = 0; !packed.status && c < 3; c++)
-				note(trial, SCALE, value_deviation(base->value + c * cells, packed.value + c * cells, SCALES[s], cells, value_floor(base, c)));
+				note(trial, SCALE,
+				     value_deviation(base->value + c * cells, packed.value + c * cells, SCALES[s], cells, value_floor(base, c)));
 			packed_free(&packed);
 		}
 		lattice_free(&scaled);
@@ -86,7 +87,8 @@ static void check_permutation(const struct trial *trial, const struct packed_tab
 	if (packed.status)
 		note(trial, WRONG, 1);
 	for (size_t c = 0; !packed.status && c < 3; c++)
-		note(trial, PERMUTE, value_deviation(base->value + c * cells, packed.value + place[c] * cells, 1, cells, value_floor(base, c)));
+		note(trial, PERMUTE,
+		     value_deviation(base->value + c * cells, packed.value + place[c] * cells, 1, cells, value_floor(base, c)));
 	packed_free(&packed);
 	lattice_free(&permuted);
 }
@@ -125,7 +127,8 @@ static void check_mirror(const struct trial *trial, const struct packed_table *b
 				const double l = trial->lattice->valid[n] ? log10((a + 1e-3) / (b + 1e-3)) : 0;
 				squares += l * l;
 			}
-		note(trial, MIRROR, sqrt(squares / (3.0 * (double)mirror.valid_count)) / fmax(1e-6, fmax(last_error(base), last_error(&packed))));
+		note(trial, MIRROR,
+		     sqrt(squares / (3.0 * (double)mirror.valid_count)) / fmax(1e-6, fmax(last_error(base), last_error(&packed))));
 	}
 	packed_free(&packed);
 	lattice_free(&mirror);
@@ -147,7 +150,8 @@ static struct lattice above_horizon(const struct trial *trial, const struct latt
 }
 
 /* Once and `generations` times, noted in `once` and the property after it. Where no record is carried there is nothing to say of that. */
-static void check_generations(const struct trial *trial, const struct packed_table *base, enum decoded_form form, enum property once)
+static void check_generations(const struct trial *trial, const struct packed_table *base, enum decoded_form form,
+                              enum property once)
 {
 	struct lattice next = {0};
 	struct carried carried = {0};
@@ -221,7 +225,8 @@ static void check_recorded(const struct trial *trial, const struct packed_table 
 		exit(1);
 	for (uint32_t layers = 1; layers < head->layer_count; layers++) {
 		struct model *model;
-		if (record_decode_whole(head, layers, base->record, &model, NULL) != BP_OK || model_expand(model, 0, &table, NULL) != BP_OK)
+		if (record_decode_whole(head, layers, base->record, &model, NULL) != BP_OK ||
+		    model_expand(model, 0, &table, NULL) != BP_OK)
 			exit(1);
 		check_layer(trial, &head->layers[layers - 1].fidelity, &table, largest);
 		model_free(model);
@@ -237,8 +242,8 @@ static void check_recorded(const struct trial *trial, const struct packed_table 
  * and not less than as many half units of the line. And where the two stopped at different steps, the one may be off by what is
  * left to go: four times the reference's last step.
  */
-static double deviation_counted(const struct trial *trial, double deviation, double units, bool same_stop, const struct oracle *slow,
-                                const double *x, const double *y, size_t n)
+static double deviation_counted(const struct trial *trial, double deviation, double units, bool same_stop,
+                                const struct oracle *slow, const double *x, const double *y, size_t n)
 {
 	uint64_t random = 1;
 	double moved = 0;

@@ -52,7 +52,8 @@ struct slow_means {
 };
 
 /* One factor of the three-way fit from the others' logarithms; axis 2 is phi_d. */
-static void slow_turn(struct lattice_dims d, const float *value, const float *shown, long double f[3][LATTICE_EXTENT_MAX], int axis)
+static void slow_turn(struct lattice_dims d, const float *value, const float *shown, long double f[3][LATTICE_EXTENT_MAX],
+                      int axis)
 {
 	const uint32_t extents[3] = {d.theta_h, d.theta_d, d.phi_d};
 	struct slow_means *means = calloc(1, sizeof *means);

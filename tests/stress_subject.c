@@ -60,8 +60,10 @@ static void through_file(const struct packed_table *packed, bool plain, const ui
 	char path[] = "/tmp/brdfpack-stress-XXXXXX";
 	const int fd = mkstemp(path);
 	if (fd < 0 || close(fd) != 0 ||
-	    lattice_write_path(path, OUTPUT_REPLACE, &packed->table, below, plain ? NULL : packed->record, plain ? 0 : packed->record_bytes, NULL) != BP_OK ||
-	    lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = carried}, out, NULL) != BP_OK || unlink(path) != 0) {
+	    lattice_write_path(path, OUTPUT_REPLACE, &packed->table, below, plain ? NULL : packed->record,
+	                       plain ? 0 : packed->record_bytes, NULL) != BP_OK ||
+	    lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = carried}, out, NULL) != BP_OK ||
+	    unlink(path) != 0) {
 		fprintf(stderr, "%s: cannot be extracted by way of %s\n", packed->head.name, path);
 		exit(1);
 	}
@@ -72,7 +74,8 @@ void packed_to_lattice(const struct packed_table *packed, enum decoded_form form
 	const size_t cells = lattice_cells(packed->head.dims);
 	uint8_t *below = calloc(cells, 1);
 
-	if (!below || (form != DECODED_WHOLE && lattice_below_horizon(packed->head.dims, packed->head.horizon_limit, below, NULL) != BP_OK))
+	if (!below ||
+	    (form != DECODED_WHOLE && lattice_below_horizon(packed->head.dims, packed->head.horizon_limit, below, NULL) != BP_OK))
 		exit(1);
 	if (form != DECODED_WHOLE) {
 		through_file(packed, form == DECODED_PLAIN, below, out, carried);
@@ -92,7 +95,11 @@ void packed_to_lattice(const struct packed_table *packed, enum decoded_form form
 static void direction_draw(uint64_t *random, float out[3])
 {
 	/* Every fourth grazes, and some coincide with the normal. */
-	const double u = stress_uniform(random), z = u < 0.25 ? u * u * u : u < 0.3 ? 1 : u, phi = 6.283185307179586 * stress_uniform(random);
+	const double u = stress_uniform(random),
+				 z = u < 0.25  ? u * u * u
+	                 : u < 0.3 ? 1
+	                           : u,
+				 phi = 6.283185307179586 * stress_uniform(random);
 	out[0] = (float)(sqrt(1 - z * z) * cos(phi));
 	out[1] = (float)(sqrt(1 - z * z) * sin(phi));
 	out[2] = (float)z;

@@ -9,12 +9,12 @@
 
 /* A lattice packed and decoded again; free with packed_free. */
 struct packed_table {
-	bp_status status;        /* of record_encode */
+	bp_status status; /* of record_encode */
 	struct record_head head;
 	uint8_t *record;
 	size_t record_bytes;
-	struct expansion table;  /* decoded from the record's bytes */
-	double *value;           /* 3 * cells, in 1/sr */
+	struct expansion table; /* decoded from the record's bytes */
+	double *value;          /* 3 * cells, in 1/sr */
 };
 
 /* As a build does: a record that comes with the lattice (carried; NULL: none) is kept where it serves, else the lattice is fitted. */

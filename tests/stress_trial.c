@@ -4,13 +4,21 @@
 #include <string.h>
 
 const char *const PROPERTY_NAMES[PROPERTY_COUNT] = {
-	"wrong", "asymmetric", "recorded", "figures", "scale", "permute", "mirror",
-	"file_1_dB", "file_n_dB", "plain_1_dB", "plain_n_dB", "whole_1_dB", "whole_n_dB", "marginals", "regression", "gsl",
+	"wrong",     "asymmetric", "recorded",   "figures",    "scale",      "permute",   "mirror",     "file_1_dB",
+	"file_n_dB", "plain_1_dB", "plain_n_dB", "whole_1_dB", "whole_n_dB", "marginals", "regression", "gsl",
 };
 
 const struct subject SUBJECTS[SUBJECT_COUNT] = {
-	{"paper", PROFILE_PAPER, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-5, 1e-12, 1e-12}, {70, 80, 70, 80}},
-	{"spectral", PROFILE_SPECTRAL, {60400, 1000, 0}, {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-5, 1e-12, 1e-12}, {120, 120, 120, 120}},
+	{"paper",
+     PROFILE_PAPER,
+     {60400, 1000, 0},
+     {0, 0, 1e-9, 1e-12, 1e-6, 1e-6, 2, 0.1, 1, 70, 80, 70, 80, 1e-5, 1e-12, 1e-12},
+     {70, 80, 70, 80}},
+	{"spectral",
+     PROFILE_SPECTRAL,
+     {60400, 1000, 0},
+     {0, 0, 1e-9, 1e-12, 1e-6, 0, 2, 0.1, 1, 20, 30, 0.1, 1, 1e-5, 1e-12, 1e-12},
+     {120, 120, 120, 120}},
 };
 static const struct {
 	enum profile profile;
@@ -53,8 +61,8 @@ void note(const struct trial *trial, enum property property, double figure)
 {
 	double *worst = &trial->figures->worst[property];
 	if (trial->verbose && !(figure <= limit_of(trial->subject, trial->options.budget_bytes, trial->kind, property)))
-		fprintf(stderr, "%s %u %s: %s %g\n", trial->subject->name, trial->options.budget_bytes, trial->name, PROPERTY_NAMES[property],
-		        figure);
+		fprintf(stderr, "%s %u %s: %s %g\n", trial->subject->name, trial->options.budget_bytes, trial->name,
+		        PROPERTY_NAMES[property], figure);
 	if (!(figure <= *worst))
 		*worst = figure;
 }

@@ -11,22 +11,22 @@
  * record's, where either counts as at least 1e-3.
  */
 enum property {
-	WRONG,       /* outcomes: packed although nothing is valid, refused although something is, values not finite or negative */
-	ASYMMETRIC,  /* evaluations that change when the directions change places */
-	RECORDED,    /* recorded figures of every layer against the slow reference, relative; figures below 1e-6 absolute */
-	FIGURES,     /* the same, relative, beyond what the rounding of the terms explains; see figure_deviation */
-	SCALE,       /* pack(s B) against s pack(B), relative to the value; see value_deviation */
-	PERMUTE,     /* channels exchanged, all three or two of them, in the same way */
-	MIRROR,      /* log RMS between pack(mirror B) and mirror(pack(B)), over the larger of their recorded errors */
-	FILES_ONE,   /* dB lost by packing an extracted file, where it carries its record */
-	FILES_TEN,   /* dB lost by doing so `generations` times */
-	PLAIN_ONE,   /* the same without the record: values alone, nothing of what lies below the horizon */
+	WRONG,      /* outcomes: packed although nothing is valid, refused although something is, values not finite or negative */
+	ASYMMETRIC, /* evaluations that change when the directions change places */
+	RECORDED,   /* recorded figures of every layer against the slow reference, relative; figures below 1e-6 absolute */
+	FIGURES,    /* the same, relative, beyond what the rounding of the terms explains; see figure_deviation */
+	SCALE,      /* pack(s B) against s pack(B), relative to the value; see value_deviation */
+	PERMUTE,    /* channels exchanged, all three or two of them, in the same way */
+	MIRROR,     /* log RMS between pack(mirror B) and mirror(pack(B)), over the larger of their recorded errors */
+	FILES_ONE,  /* dB lost by packing an extracted file, where it carries its record */
+	FILES_TEN,  /* dB lost by doing so `generations` times */
+	PLAIN_ONE,  /* the same without the record: values alone, nothing of what lies below the horizon */
 	PLAIN_TEN,
-	WHOLE_ONE,   /* the same for the whole decoded table, which no file holds */
+	WHOLE_ONE, /* the same for the whole decoded table, which no file holds */
 	WHOLE_TEN,
-	MARGINALS,   /* means and scale against exact sums, relative */
-	REGRESSION,  /* robust_fit against the same steps in long double, where these converge: relative; see deviation_counted */
-	GSL,         /* robust_fit against GSL, where that converges, likewise */
+	MARGINALS,  /* means and scale against exact sums, relative */
+	REGRESSION, /* robust_fit against the same steps in long double, where these converge: relative; see deviation_counted */
+	GSL,        /* robust_fit against GSL, where that converges, likewise */
 	PROPERTY_COUNT
 };
 extern const char *const PROPERTY_NAMES[PROPERTY_COUNT];

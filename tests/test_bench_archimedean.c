@@ -186,7 +186,8 @@ static void recovers(enum archimedean_family family, const struct own own[3])
 /* Weak and strong dependence, with and without a diffuse part. */
 static void frank_recovers_its_own_parameters(void **unused)
 {
-	static const struct own OWN[2][3] = {{{0, 0.3F, 0}, {2, 1.6F, 0}, {5, 5, 0.5F}}, {{0, 14, 0.2F}, {6, 22, 1}, {3, 0.1F, 0.1F}}};
+	static const struct own OWN[2][3] = {{{0, 0.3F, 0}, {2, 1.6F, 0}, {5, 5, 0.5F}},
+	                                     {{0, 14, 0.2F}, {6, 22, 1}, {3, 0.1F, 0.1F}}};
 	(void)unused;
 	recovers(ARCHIMEDEAN_FRANK, OWN[0]);
 	recovers(ARCHIMEDEAN_FRANK, OWN[1]);

@@ -111,7 +111,8 @@ static void cells_weigh_their_measure_times_the_squared_cosine(void **state)
 		size_t at;
 		uint32_t cell;
 		double weight;
-	} expected[] = {{0, 0, 0.00119337105232833}, {5, 5, 0.0020706387732306697}, {20, 22, 0.02930306966053244}, {39, 51, 0.02500056761055221}};
+	} expected[] = {
+		{0, 0, 0.00119337105232833}, {5, 5, 0.0020706387732306697}, {20, 22, 0.02930306966053244}, {39, 51, 0.02500056761055221}};
 	const struct lattice_dims dims = {4, 4, 4};
 	struct lattice lattice;
 	struct lobe_sample sample;
@@ -172,7 +173,8 @@ static struct lattice make_table(const struct lobe_model *model, const float *sh
 	return lattice;
 }
 
-static void check_recovery_by(enum lobe_objective objective, const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)
+static void check_recovery_by(enum lobe_objective objective, const struct lobe_model *model, const float *shape,
+                              const float *diffuse, const float *specular)
 {
 	struct lattice lattice = make_table(model, shape, diffuse, specular);
 	struct lobe_state *found;

@@ -22,7 +22,8 @@ static struct row row_of(int material, int method, double budget, double bytes, 
 
 static void a_median_is_taken_per_column_and_leaves_out_what_is_absent(void **unused)
 {
-	const struct row rows[4] = {row_of(0, 0, 0, 30, NAN), row_of(1, 0, 0, 10, 5), row_of(2, 0, 0, 20, NAN), row_of(3, 0, 0, 40, 7)};
+	const struct row rows[4] = {row_of(0, 0, 0, 30, NAN), row_of(1, 0, 0, 10, 5), row_of(2, 0, 0, 20, NAN),
+	                            row_of(3, 0, 0, 40, 7)};
 	(void)unused;
 
 	assert_true(row_median(rows, 4).bytes == 25);

@@ -4,7 +4,7 @@
 
 static void values_come_back_as_written(void **state)
 {
-	struct byte_buffer out = { 0 };
+	struct byte_buffer out = {0};
 	struct byte_reader in;
 	double nan_kept;
 	(void)state;
@@ -35,8 +35,8 @@ static void values_come_back_as_written(void **state)
 
 static void bytes_are_little_endian(void **state)
 {
-	static const uint8_t expected[] = { 0x04, 0x03, 0x02, 0x01, 0x00, 0x00, 0x80, 0x3F };
-	struct byte_buffer out = { 0 };
+	static const uint8_t expected[] = {0x04, 0x03, 0x02, 0x01, 0x00, 0x00, 0x80, 0x3F};
+	struct byte_buffer out = {0};
 	(void)state;
 	write_u32(&out, 0x01020304);
 	write_f32(&out, 1.0f);
@@ -48,9 +48,9 @@ static void bytes_are_little_endian(void **state)
 
 static void reading_past_the_end_fails_for_good(void **state)
 {
-	static const uint8_t three[3] = { 1, 2, 3 };
+	static const uint8_t three[3] = {1, 2, 3};
 	struct byte_reader in = byte_reader_over(three, 3);
-	uint8_t copy[4] = { 9, 9, 9, 9 };
+	uint8_t copy[4] = {9, 9, 9, 9};
 	(void)state;
 	assert_int_equal(read_u32(&in), 0);
 	assert_true(in.failed);
@@ -64,7 +64,7 @@ static void reading_past_the_end_fails_for_good(void **state)
 
 static void a_buffer_grows_past_its_first_size(void **state)
 {
-	struct byte_buffer out = { 0 };
+	struct byte_buffer out = {0};
 	(void)state;
 	for (uint32_t i = 0; i < 10000; i++)
 		write_u32(&out, i);
@@ -84,18 +84,26 @@ static void the_checksum_is_the_usual_crc32(void **state)
 
 static void names_are_utf8_without_controls_and_slashes(void **state)
 {
-	static const char *const good[] = { "a", "alum-bronze", "...", ".a", "caf\xC3\xA9", "\xF0\x9F\x8E\xA8", "\xED\x9F\xBF", "a b" };
+	static const char *const good[] = {"a", "alum-bronze", "...", ".a", "caf\xC3\xA9", "\xF0\x9F\x8E\xA8", "\xED\x9F\xBF", "a b"};
 	static const struct {
 		const char *name;
 		size_t count;
 	} bad[] = {
-		{ "", 0 }, { ".", 1 }, { "..", 2 }, { "a/b", 3 }, { "a\nb", 3 }, { "a\0b", 3 }, { "\x7F", 1 },
-		{ "\xC2\x85", 2 },         /* a C1 control */
-		{ "\xC0\x80", 2 },         /* overlong */
-		{ "\xE0\x80\xAF", 3 },     /* overlong '/' */
-		{ "\xED\xA0\x80", 3 },     /* surrogate */
-		{ "\xF4\x90\x80\x80", 4 }, /* above U+10FFFF */
-		{ "\xC3", 1 }, { "\x80", 1 }, { "\xFF", 1 },
+		{"", 0},
+		{".", 1},
+		{"..", 2},
+		{"a/b", 3},
+		{"a\nb", 3},
+		{"a\0b", 3},
+		{"\x7F", 1},
+		{"\xC2\x85", 2},         /* a C1 control */
+		{"\xC0\x80", 2},         /* overlong */
+		{"\xE0\x80\xAF", 3},     /* overlong '/' */
+		{"\xED\xA0\x80", 3},     /* surrogate */
+		{"\xF4\x90\x80\x80", 4}, /* above U+10FFFF */
+		{"\xC3", 1},
+		{"\x80", 1},
+		{"\xFF", 1},
 	};
 	char long_name[256];
 	(void)state;

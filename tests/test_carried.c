@@ -134,7 +134,7 @@ static void a_file_that_lost_some_of_it_carries_nothing(void **state)
 	double values[VALUES];
 	bytes_make(bytes, 300);
 	values_make(bytes, 300, values);
-	nothing_found(values, 51); /* the last value is missing */
+	nothing_found(values, 51);            /* the last value is missing */
 	values[0] = (double)(float)values[0]; /* through single precision */
 	nothing_found(values, VALUES);
 	values_make(bytes, 300, values);

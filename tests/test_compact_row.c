@@ -32,9 +32,14 @@ static void row_make(compact_row_fn *make, uint32_t period, int channels, const 
 {
 	const uint32_t blocks = (period + COMPACT_WIDTH_MAX - 1) / COMPACT_WIDTH_MAX, width = (period + blocks - 1) / blocks;
 	struct compact_rows_plan plan = {
-		.period = period, .padded = blocks * width + 1, .blocks = blocks, .width = width,
-		.block_bytes = channels == 3 ? COMPACT_BLOCK_RGB : COMPACT_BLOCK_MONO, .channels = channels,
-		.third = 1.0f / 3, .dark = 1e-4f,
+		.period = period,
+		.padded = blocks * width + 1,
+		.blocks = blocks,
+		.width = width,
+		.block_bytes = channels == 3 ? COMPACT_BLOCK_RGB : COMPACT_BLOCK_MONO,
+		.channels = channels,
+		.third = 1.0f / 3,
+		.dark = 1e-4f,
 	};
 	memset(out, 0, sizeof *out);
 	plan.row = (struct compact_row){out->scratch[0], {out->scratch[1], out->scratch[2]}, out->scratch[3]};
@@ -44,7 +49,8 @@ static void row_make(compact_row_fn *make, uint32_t period, int channels, const 
 		const uint8_t *block = out->blocks + k / width * 2 * plan.block_bytes;
 		uint16_t head[2];
 		memcpy(head, block, sizeof head);
-		const float base = float_of_bits((uint32_t)head[0] << COMPACT_HEAD_SHIFT), step = float_of_bits((uint32_t)head[1] << COMPACT_HEAD_SHIFT);
+		const float base = float_of_bits((uint32_t)head[0] << COMPACT_HEAD_SHIFT),
+					step = float_of_bits((uint32_t)head[1] << COMPACT_HEAD_SHIFT);
 		const float root = base + step * (float)block[COMPACT_RESIDUALS + k % width];
 		assert_true(fabsf(root - sqrtf(sqrtf((rgb[0][k] + rgb[1][k] + rgb[2][k]) / 3))) <= 0.501f * step + 1e-6f);
 	}
@@ -71,8 +77,8 @@ static void residuals_are_within_half_a_step_and_alike_on_every_processor(void *
 				row_make(kernels_avx2_usable() ? compact_row_avx2 : compact_row_plain, PERIODS[p], channels, rgb, &outcome[1]);
 				assert_memory_equal(&outcome[0], &outcome[1], sizeof outcome[0]);
 				for (uint32_t n = 0; n < 3 * BLOCKS_MAX; n++)
-					assert_true(outcome[0].knots[0][n] >= 0 && outcome[0].knots[1][n] >= 0 &&
-					            outcome[0].knots[0][n] <= 1 && outcome[0].knots[1][n] <= 1);
+					assert_true(outcome[0].knots[0][n] >= 0 && outcome[0].knots[1][n] >= 0 && outcome[0].knots[0][n] <= 1 &&
+					            outcome[0].knots[1][n] <= 1);
 			}
 	}
 }

@@ -114,8 +114,13 @@ static void the_figure_is_written_as_svg_and_as_png(void **state)
 	close(fd);
 	assert_int_equal(density_source_measured(&lattice, &source, &error), BP_OK);
 	error_profile(&lattice, &table, profile);
-	struct figure figure = {.title = "a <small> lattice", .dims = SMALL, .error_after = profile, .row_count = 1, .slice_count = 2,
-	                        .rows = {{"measured", &source}}, .slices = {1, 5}};
+	struct figure figure = {.title = "a <small> lattice",
+	                        .dims = SMALL,
+	                        .error_after = profile,
+	                        .row_count = 1,
+	                        .slice_count = 2,
+	                        .rows = {{"measured", &source}},
+	                        .slices = {1, 5}};
 	for (int svg = 0; svg < 2; svg++) {
 		assert_int_equal(figure_write(path, svg, &figure, &error), BP_OK);
 		FILE *file = fopen(path, "rb");

@@ -88,7 +88,10 @@ static void tables_hold_the_expansion_in_every_layout(void **state)
 		assert_int_equal(model_expand(model, 0, &expected, NULL), BP_OK);
 		assert_int_equal(lattice_below_horizon(DIMS, model->horizon_limit, below, NULL), BP_OK);
 		for (int kind = 0; kind < 12; kind++) {
-			const bp_table_options options = {.struct_bytes = sizeof options, .number = (bp_number)(kind % 3), .layout = (bp_layout)(kind / 3 % 2), .continued = kind / 6};
+			const bp_table_options options = {.struct_bytes = sizeof options,
+			                                  .number = (bp_number)(kind % 3),
+			                                  .layout = (bp_layout)(kind / 3 % 2),
+			                                  .continued = kind / 6};
 			const size_t bytes = bp_table_bytes(12, 10, 24, &options);
 			assert_int_equal(bytes, 3 * CELLS * (size_t)(kind % 3 == 0 ? 4 : kind % 3 == 1 ? 8 : 2));
 			void *values = malloc(bytes);
@@ -120,8 +123,11 @@ static void table_options_are_checked(void **state)
 	float values[3 * CELLS];
 	bp_error error;
 	(void)state;
-	const bp_table_options bad[] = {{.struct_bytes = 3}, {.struct_bytes = sizeof *bad, .number = (bp_number)3}, {.struct_bytes = sizeof *bad, .layout = (bp_layout)2},
-	                                {.struct_bytes = sizeof *bad, .continued = 2}, {.struct_bytes = sizeof *bad, .max_log_rmse = NAN}};
+	const bp_table_options bad[] = {{.struct_bytes = 3},
+	                                {.struct_bytes = sizeof *bad, .number = (bp_number)3},
+	                                {.struct_bytes = sizeof *bad, .layout = (bp_layout)2},
+	                                {.struct_bytes = sizeof *bad, .continued = 2},
+	                                {.struct_bytes = sizeof *bad, .max_log_rmse = NAN}};
 	for (size_t n = 0; n < sizeof bad / sizeof *bad; n++)
 		assert_int_equal(bp_archive_table(held.archive, 0, &bad[n], values, sizeof values, &error), BP_ERROR_ARGUMENT);
 	assert_int_equal(bp_archive_table(held.archive, 0, NULL, values, sizeof values - 4, &error), BP_ERROR_ARGUMENT);
@@ -164,9 +170,10 @@ static void batches_give_the_bits_of_single_calls(void **state)
 	for (int sampling = 0; sampling < 2; sampling++) {
 		const bp_load_options options = {.struct_bytes = sizeof options, .sampling = sampling};
 		assert_int_equal(bp_material_load(held.archive, 0, &options, &material, NULL), BP_OK);
-		bp_material_sample_batch(material, PAIRS, (const float *const[]){p->wo[0], p->wo[1], p->wo[2]}, (const float *const[]){p->u[0], p->u[1], p->u[2]},
-		                         (float *const[]){wi[0], wi[1], wi[2]}, pdf);
-		bp_material_pdf_batch(material, PAIRS, (const float *const[]){p->wi[0], p->wi[1], p->wi[2]}, (const float *const[]){p->wo[0], p->wo[1], p->wo[2]}, density);
+		bp_material_sample_batch(material, PAIRS, (const float *const[]){p->wo[0], p->wo[1], p->wo[2]},
+		                         (const float *const[]){p->u[0], p->u[1], p->u[2]}, (float *const[]){wi[0], wi[1], wi[2]}, pdf);
+		bp_material_pdf_batch(material, PAIRS, (const float *const[]){p->wi[0], p->wi[1], p->wi[2]},
+		                      (const float *const[]){p->wo[0], p->wo[1], p->wo[2]}, density);
 		for (int n = 0; n < PAIRS; n++) {
 			const float in[3] = {p->wi[0][n], p->wi[1][n], p->wi[2][n]}, out[3] = {p->wo[0][n], p->wo[1][n], p->wo[2][n]};
 			const float u[3] = {p->u[0][n], p->u[1][n], p->u[2][n]};
@@ -176,7 +183,8 @@ static void batches_give_the_bits_of_single_calls(void **state)
 			assert_true(density[n] == bp_material_pdf(material, in, out));
 		}
 		assert_true(sampling ? pdf[100] > 0 && pdf[5] == 0 && pdf[6] == 0 && density[7] == 0 : pdf[100] == 0);
-		bp_material_sample_batch(material, 0, (const float *const[]){NULL, NULL, NULL}, (const float *const[]){NULL, NULL, NULL}, (float *const[]){NULL, NULL, NULL}, NULL);
+		bp_material_sample_batch(material, 0, (const float *const[]){NULL, NULL, NULL}, (const float *const[]){NULL, NULL, NULL},
+		                         (float *const[]){NULL, NULL, NULL}, NULL);
 		bp_material_free(material);
 	}
 	free(p);
@@ -240,7 +248,8 @@ static void what_a_material_keeps_comes_from_the_callers_allocator(void **state)
 			struct arena arena = {0};
 			bp_allocator allocator = {arena_alloc, arena_release, &arena};
 			bp_loaded loaded = {.struct_bytes = sizeof loaded};
-			const bp_load_options options = {.struct_bytes = sizeof options, .form = (bp_form)form, .sampling = sampling, .allocator = &allocator};
+			const bp_load_options options = {
+				.struct_bytes = sizeof options, .form = (bp_form)form, .sampling = sampling, .allocator = &allocator};
 			bp_material *material = NULL, *other = NULL;
 			assert_int_equal(bp_material_load(held.archive, 0, &options, &material, NULL), BP_OK);
 			assert_int_equal(bp_material_loaded(material, &loaded, NULL), BP_OK);

@@ -28,8 +28,9 @@ static size_t demo_find(const char *name)
 static void every_kind_of_material_is_there_under_names_that_differ(void **state)
 {
 	(void)state;
-	static const char *const kinds[] = {"matte", "satin", "plastic", "rough-metal", "polished-metal", "mirror", "metallic-paint", "cloth",
-	                                    "retroreflector", "clear-coat", "iridescent", "near-black", "white"};
+	static const char *const kinds[] = {"matte",      "satin",          "plastic", "rough-metal",    "polished-metal",
+	                                    "mirror",     "metallic-paint", "cloth",   "retroreflector", "clear-coat",
+	                                    "iridescent", "near-black",     "white"};
 	assert_true(demo_count() >= 14);
 	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
 		size_t found = 0;

@@ -133,7 +133,8 @@ static void where_phi_is_undefined_the_documented_values_come_out(void **user)
 {
 	(void)user;
 	struct lattice_point at;
-	const float up[3] = {0, 0, 1}, a[3] = {0.6f, 0, 0.8f}, b[3] = {-0.6f, 0, 0.8f}, c[3] = {0, 0.6f, 0.8f}, d[3] = {0, -0.6f, 0.8f};
+	const float up[3] = {0, 0, 1}, a[3] = {0.6f, 0, 0.8f}, b[3] = {-0.6f, 0, 0.8f}, c[3] = {0, 0.6f, 0.8f},
+				d[3] = {0, -0.6f, 0.8f};
 	assert_true(direction_to_lattice(DIMS, up, up, &at));
 	assert_true(at.h == 0 && at.d == 0 && fmodf(at.p, 180) == 0);
 	assert_true(direction_to_lattice(DIMS, a, a, &at)); /* wi = wo */
@@ -149,7 +150,8 @@ static void unusable_directions_are_refused(void **user)
 	(void)user;
 	struct lattice_point at;
 	const float good[3] = {0.6f, 0, 0.8f};
-	const float bad[][3] = {{0, 0, 0}, {0.6f, 0, -0.8f}, {1, 0, 0}, {1, 0, -0.0f}, {NAN, 0, 1}, {0, NAN, 1}, {0, 0, NAN}, {INFINITY, 0, 1},
+	const float bad[][3] = {{0, 0, 0},        {0.6f, 0, -0.8f},  {1, 0, 0},           {1, 0, -0.0f},
+	                        {NAN, 0, 1},      {0, NAN, 1},       {0, 0, NAN},         {INFINITY, 0, 1},
 	                        {0, 0, INFINITY}, {0, -INFINITY, 1}, {1e-30f, 0, 1e-30f}, {1e30f, 0, 1e30f}};
 	for (size_t n = 0; n < sizeof bad / sizeof *bad; n++) {
 		assert_false(direction_to_lattice(DIMS, bad[n], good, &at));

@@ -32,10 +32,7 @@ static int mode_is(int mode)
 	return fegetround() == MODE[mode % 4];
 }
 
-static uint32_t crc_of(uint32_t crc, const void *bytes, size_t count)
-{
-	return bytes_crc32_more(crc, bytes, count);
-}
+static uint32_t crc_of(uint32_t crc, const void *bytes, size_t count) { return bytes_crc32_more(crc, bytes, count); }
 
 /*
  * What comes of packing and loading, as checksums: record, tables, and, evaluated in the usual mode, values, samples and albedos.
@@ -43,7 +40,8 @@ static uint32_t crc_of(uint32_t crc, const void *bytes, size_t count)
  */
 static uint32_t figures_in_mode(int mode, const double *planes, uint32_t profile)
 {
-	const bp_measured measured = {.struct_bytes = sizeof measured, .theta_h = 24, .theta_d = 20, .phi_d = 48, .number = BP_NUMBER_DOUBLE, .values = planes};
+	const bp_measured measured = {
+		.struct_bytes = sizeof measured, .theta_h = 24, .theta_d = 20, .phi_d = 48, .number = BP_NUMBER_DOUBLE, .values = planes};
 	const bp_pack_options packing = {.struct_bytes = sizeof packing, .profile = profile};
 	bp_writer *writer = NULL;
 	bp_archive *archive = NULL;

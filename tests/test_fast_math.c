@@ -21,7 +21,9 @@ static void the_double_logarithm_keeps_its_bound(void **user)
 {
 	(void)user;
 	for (int k = 0; k < 300000; k++) {
-		double x = k % 3 == 0 ? ldexp(1 + uniform(), (int)(uniform() * 2040) - 1020) : k % 3 == 1 ? 0.5 + 1.5 * uniform() : 1 + (uniform() - 0.5) * 1e-6;
+		double x = k % 3 == 0   ? ldexp(1 + uniform(), (int)(uniform() * 2040) - 1020)
+		           : k % 3 == 1 ? 0.5 + 1.5 * uniform()
+		                        : 1 + (uniform() - 0.5) * 1e-6;
 		long double want = log2l((long double)x), gap = fabsl((long double)fast_log2(x) - want);
 		assert_true(gap <= (fabsl(want) <= 1 ? 4e-16L : 4e-16L + fabsl(want) * 2.3e-16L));
 	}

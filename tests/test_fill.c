@@ -19,7 +19,8 @@ static double uniform(void)
 	return (double)(state >> 11) * 0x1p-53;
 }
 
-static void fill_once(uint32_t rows, uint32_t columns, bool wrap_rows, bool wrap_columns, float *plane, const uint8_t *valid, float empty)
+static void fill_once(uint32_t rows, uint32_t columns, bool wrap_rows, bool wrap_columns, float *plane, const uint8_t *valid,
+                      float empty)
 {
 	struct fill *fill;
 	assert_int_equal(fill_create(rows, columns, wrap_rows, wrap_columns, &fill, NULL), BP_OK);
@@ -134,7 +135,9 @@ static void filled_cells_are_near_the_mean_of_their_neighbours(void **user)
 	for (int r = 1; r < R - 1; r++)
 		for (int c = 0; c < C; c++)
 			if (!valid[r * C + c]) {
-				float mean = (plane[(r - 1) * C + c] + plane[(r + 1) * C + c] + plane[r * C + (c + 1) % C] + plane[r * C + (c + C - 1) % C]) / 4;
+				float mean = (plane[(r - 1) * C + c] + plane[(r + 1) * C + c] + plane[r * C + (c + 1) % C] +
+				              plane[r * C + (c + C - 1) % C]) /
+				             4;
 				squares += (double)((plane[r * C + c] - mean) * (plane[r * C + c] - mean));
 				n++;
 			}

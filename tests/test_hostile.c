@@ -1,7 +1,7 @@
 /* Damaged and hostile archives: every byte and every bit of a small one. */
 #include "archive_fixture.h"
 
-static const char *const NAMES[] = { "brass", "chrome", "delrin" };
+static const char *const NAMES[] = {"brass", "chrome", "delrin"};
 
 /* Everything a reader does with an archive but decoding; the first error, or BP_OK. */
 static bp_status read_all(const char *path, bp_error *error)
@@ -21,13 +21,14 @@ static void nothing_false_is_told(const char *path)
 	if (bp_archive_open(path, &archive, NULL) != BP_OK)
 		return;
 	for (int i = 0; i < 3; i++) {
-		struct index_page leaf = { 0 };
+		struct index_page leaf = {0};
 		struct index_entry entry;
 		struct record_head head;
 		uint8_t *record = NULL, *expected;
 		size_t expected_bytes;
 		uint64_t index;
-		if (bp_archive_find(archive, NAMES[i], &index, NULL) != BP_OK || archive_entry(archive, index, &leaf, &entry, NULL) != BP_OK ||
+		if (bp_archive_find(archive, NAMES[i], &index, NULL) != BP_OK ||
+		    archive_entry(archive, index, &leaf, &entry, NULL) != BP_OK ||
 		    archive_entry_record(archive, &entry, &head, &record, NULL) != BP_OK)
 			continue;
 		expected = fixture_record(NAMES[i], 2, 9, &expected_bytes);
@@ -48,7 +49,7 @@ static void every_truncation_is_noticed(void **state)
 	fixture_archive(fixture_path("a.bpk"), NAMES, 3, 9);
 	file = fixture_file_read(fixture_path("a.bpk"), &bytes);
 	for (size_t count = 0; count < bytes; count++) {
-		bp_error error = { 0 };
+		bp_error error = {0};
 		bp_status status;
 		fixture_file_write(fixture_path("t.bpk"), file, count);
 		status = read_all(fixture_path("t.bpk"), &error);
@@ -74,7 +75,7 @@ static void every_flipped_bit_is_noticed_and_nothing_false_is_told(void **state)
 	assert_non_null(damaged);
 	setbuf(damaged, NULL);
 	for (size_t bit = 0; bit < 8 * bytes; bit++) {
-		bp_error error = { 0 };
+		bp_error error = {0};
 		fseek(damaged, (long)(bit / 8), SEEK_SET);
 		fputc(file[bit / 8] ^ 1 << bit % 8, damaged);
 		if (read_all(fixture_path("f.bpk"), &error) == BP_OK)
@@ -94,7 +95,7 @@ static bp_status verify_with_page(size_t at, uint64_t value, unsigned width)
 {
 	size_t bytes;
 	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes), *page = file + bytes - PAGE_BYTES;
-	bp_error error = { 0 };
+	bp_error error = {0};
 	bp_status status;
 	for (unsigned i = 0; i < width; i++)
 		page[at + i] = (uint8_t)(value >> 8 * i);
@@ -113,15 +114,16 @@ static void hostile_index_pages_are_refused(void **state)
 		uint64_t value;
 		unsigned width;
 	} cases[] = {
-		{ 4, 1, 2 }, { 4, 65535, 2 },             /* level */
-		{ 6, 0, 2 }, { 6, 2, 2 }, { 6, 4, 2 }, { 6, 255, 2 }, { 6, 65535, 2 }, /* entries */
-		{ 8, 1, 8 }, { 8, UINT64_MAX, 8 },        /* first ordinal */
-		{ 16, 0, 8 }, { 16, 65, 8 }, { 16, UINT64_MAX, 8 }, { 16, UINT64_MAX - 100, 8 }, /* record offset */
-		{ 24, 0, 4 }, { 24, UINT32_MAX, 4 }, { 24, 1 << 24, 4 }, /* record bytes */
-		{ 28, 0, 4 }, { 28, UINT32_MAX, 4 }, { 28, 300, 4 }, /* head bytes */
-		{ 32, 0, 1 }, { 32, 4, 1 }, { 32, 255, 1 }, /* name bytes */
-		{ 33, 'z', 1 }, { 33, '/', 1 }, { 33, 'a', 1 }, /* the name: out of order, illegal, not the record's */
-		{ 2000, 1, 1 },                           /* padding */
+		{4, 1, 2},     {4, 65535, 2}, /* level */
+		{6, 0, 2},     {6, 2, 2},           {6, 4, 2},           {6, 255, 2},
+		{6, 65535, 2},                                                                      /* entries */
+		{8, 1, 8},     {8, UINT64_MAX, 8},                                                  /* first ordinal */
+		{16, 0, 8},    {16, 65, 8},         {16, UINT64_MAX, 8}, {16, UINT64_MAX - 100, 8}, /* record offset */
+		{24, 0, 4},    {24, UINT32_MAX, 4}, {24, 1 << 24, 4},                               /* record bytes */
+		{28, 0, 4},    {28, UINT32_MAX, 4}, {28, 300, 4},                                   /* head bytes */
+		{32, 0, 1},    {32, 4, 1},          {32, 255, 1},                                   /* name bytes */
+		{33, 'z', 1},  {33, '/', 1},        {33, 'a', 1}, /* the name: out of order, illegal, not the record's */
+		{2000, 1, 1},                                     /* padding */
 	};
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 3, 9);

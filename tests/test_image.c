@@ -171,11 +171,11 @@ static void the_three_pictures_stand_side_by_side(void **state)
 	assert_int_equal(picture_compare(&reference, &estimate, &picture, &error), BP_OK);
 	assert_int_equal(picture.width * 100 + picture.height, 602);
 	const uint8_t *row = picture.rgb + 3 * 6;
-	assert_int_equal(row[0], 243);      /* 0.9 in sRGB */
+	assert_int_equal(row[0], 243); /* 0.9 in sRGB */
 	assert_int_equal(row[3 * 3], 243);
 	assert_int_equal(row[3 * 3 + 1], 239); /* 0.864 in sRGB: 0.937658, 239 */
 	assert_int_equal(row[3 * 5], 0);
-	assert_int_equal(row[3 * 5 + 1], 43); /* 10 (0.954687 - 0.937658) 255 = 43.4 */
+	assert_int_equal(row[3 * 5 + 1], 43);                                           /* 10 (0.954687 - 0.937658) 255 = 43.4 */
 	assert_true(row[3 * 2] == 255 && row[3 * 2 + 1] == 0 && row[3 * 2 + 2] == 255); /* magenta: not finite */
 	assert_int_equal(row[3 * 4], 255);
 	picture_free(&picture);

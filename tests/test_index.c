@@ -6,7 +6,7 @@ static void archive_of_many(const char *path, uint32_t count, void name_of(uint3
 	struct archive_writer *writer = NULL;
 	assert_int_equal(archive_writer_open(path, &writer, NULL), BP_OK);
 	for (uint32_t i = 0; i < count; i++) {
-		struct section_list sections = { 0 };
+		struct section_list sections = {0};
 		struct record_head head;
 		uint8_t *record;
 		size_t bytes;
@@ -21,10 +21,7 @@ static void archive_of_many(const char *path, uint32_t count, void name_of(uint3
 	assert_int_equal(archive_writer_commit(writer, NULL), BP_OK);
 }
 
-static void short_name(uint32_t i, char *name)
-{
-	sprintf(name, "m%07u", i);
-}
+static void short_name(uint32_t i, char *name) { sprintf(name, "m%07u", i); }
 
 /* 255 bytes, different at the end only: the fewest entries per page. */
 static void long_name(uint32_t i, char *name)
@@ -67,7 +64,8 @@ static void the_longest_names_stay_below_64_KiB(void **state)
 	(void)state;
 	archive_of_many(path, count, long_name);
 	assert_int_equal(bp_archive_open(path, &archive, NULL), BP_OK);
-	assert_int_equal(archive_header(archive)->depth, 5); /* 15 entries a page: 15^4 < 60000 <= 15^5, and 15^5 < 1,000,000 <= 15^6 */
+	assert_int_equal(archive_header(archive)->depth,
+	                 5); /* 15 entries a page: 15^4 < 60000 <= 15^5, and 15^5 < 1,000,000 <= 15^6 */
 	for (uint32_t i = 0; i < count; i += 997) {
 		uint64_t before = bp_archive_bytes_read(archive);
 		name[255] = 0;
@@ -85,7 +83,7 @@ static void a_walk_over_all_materials_reads_every_page_about_once(void **state)
 	const char *path = fixture_path("walk.bpk");
 	const uint32_t count = 20000;
 	bp_archive *archive = NULL;
-	struct index_page leaf = { 0 };
+	struct index_page leaf = {0};
 	(void)state;
 	archive_of_many(path, count, short_name);
 	assert_int_equal(bp_archive_open(path, &archive, NULL), BP_OK);
@@ -104,8 +102,8 @@ static void a_walk_over_all_materials_reads_every_page_about_once(void **state)
 
 static void names_before_between_and_behind_all_are_not_found(void **state)
 {
-	static const char *const names[] = { "b", "d", "f" };
-	static const char *const missing[] = { "a", "bb", "c", "e", "g", "", "B", "\xFF" };
+	static const char *const names[] = {"b", "d", "f"};
+	static const char *const missing[] = {"a", "bb", "c", "e", "g", "", "B", "\xFF"};
 	bp_archive *archive = NULL;
 	uint64_t found = 77;
 	char name[256];

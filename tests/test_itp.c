@@ -48,7 +48,8 @@ static void a_colour_has_the_coordinates_that_others_find(void **state)
 static void a_difference_is_what_others_find(void **state)
 {
 	(void)state;
-	const double a[3] = {0.4885468072, -0.04739350675 / 2, 0.07475401302}, b[3] = {0.4899203231, -0.04567508203 / 2, 0.07361341775};
+	const double a[3] = {0.4885468072, -0.04739350675 / 2, 0.07475401302},
+				 b[3] = {0.4899203231, -0.04567508203 / 2, 0.07361341775};
 	assert_true(fabs(itp_difference(a, b) - 1.42657228) < 1e-8);
 }
 

@@ -12,10 +12,7 @@
 static char *text;
 static size_t text_bytes;
 
-static struct json begin(bool indent)
-{
-	return json_begin(open_memstream(&text, &text_bytes), indent);
-}
+static struct json begin(bool indent) { return json_begin(open_memstream(&text, &text_bytes), indent); }
 
 static void expect(struct json *json, const char *wanted)
 {

@@ -88,10 +88,15 @@ static void planes_are_aligned_and_apart_and_nothing_is_valid(void **state)
 static void a_cell_is_valid_when_all_channels_are_finite_and_not_negative(void **state)
 {
 	(void)state;
-	static const struct { double r, g, b; int valid, nonfinite; } cases[] = {
-		{0, 0, 0, 1, 0}, {-0.0, 1, 1, 1, 0}, {1e300, 1e-300, DBL_MIN / 4, 1, 0}, {DBL_MAX, 1, 1, 1, 0},
-		{-1e-300, 1, 1, 0, 0}, {1, -1, 1, 0, 0}, {1, 1, -1, 0, 0}, {-1, -1, -1, 0, 0},
-		{NAN, 1, 1, 0, 1}, {1, -NAN, 1, 0, 1}, {1, 1, INFINITY, 0, 1}, {-INFINITY, 1, 1, 0, 1}, {NAN, -1, INFINITY, 0, 1},
+	static const struct {
+		double r, g, b;
+		int valid, nonfinite;
+	} cases[] = {
+		{0, 0, 0, 1, 0},           {-0.0, 1, 1, 1, 0},     {1e300, 1e-300, DBL_MIN / 4, 1, 0},
+		{DBL_MAX, 1, 1, 1, 0},     {-1e-300, 1, 1, 0, 0},  {1, -1, 1, 0, 0},
+		{1, 1, -1, 0, 0},          {-1, -1, -1, 0, 0},     {NAN, 1, 1, 0, 1},
+		{1, -NAN, 1, 0, 1},        {1, 1, INFINITY, 0, 1}, {-INFINITY, 1, 1, 0, 1},
+		{NAN, -1, INFINITY, 0, 1},
 	};
 	const size_t count = sizeof cases / sizeof *cases;
 	struct lattice lattice;

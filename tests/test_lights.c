@@ -7,10 +7,7 @@
 
 #include "render/lights.h"
 
-static double length(const double v[3])
-{
-	return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
+static double length(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 static void directional_lights_are_unit_vectors(void **state)
 {

@@ -19,10 +19,7 @@ static bp_status parse_bytes(const char *text, size_t bytes, struct manifest *ou
 	return manifest_parse(copy, bytes, out, &error);
 }
 
-static bp_status parse(const char *text, struct manifest *out)
-{
-	return parse_bytes(text, strlen(text), out);
-}
+static bp_status parse(const char *text, struct manifest *out) { return parse_bytes(text, strlen(text), out); }
 
 static void refuse(const char *text, const char *wanted)
 {
@@ -95,7 +92,10 @@ static void names_of_measured_files_stand_for_their_materials(void **state)
 	assert_string_equal(manifest.entries[3].name, "x");
 	manifest_free(&manifest);
 	refuse("x\nfolder/x.binary\n", "line 2: 'x' stands in line 1 already");
-	assert_int_equal(parse_bytes("\xFF\xFE" "a\0", 4, &manifest), BP_ERROR_BAD_INPUT);
+	assert_int_equal(parse_bytes("\xFF\xFE"
+	                             "a\0",
+	                             4, &manifest),
+	                 BP_ERROR_BAD_INPUT);
 	assert_string_equal(error.message, "this is UTF-16; save it as UTF-8");
 }
 

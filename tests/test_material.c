@@ -97,7 +97,8 @@ static void a_loaded_material_gives_what_its_decoded_table_gives(void **state)
 				table_nearest(table, wi, wo, want);
 				assert_memory_equal(got, want, sizeof got);
 				bp_material_evaluate_batch(material, 1, (const float *const[]){&wi[0], &wi[1], &wi[2]},
-				                           (const float *const[]){&wo[0], &wo[1], &wo[2]}, (float *const[]){&got[0], &got[1], &got[2]});
+				                           (const float *const[]){&wo[0], &wo[1], &wo[2]},
+				                           (float *const[]){&got[0], &got[1], &got[2]});
 				table_evaluate(table, wi, wo, want);
 				assert_memory_equal(got, want, sizeof got);
 			}

@@ -29,7 +29,8 @@ static uint8_t *record_of(const bp_archive *archive, const char *name, struct re
 
 static int archives_make(void **state)
 {
-	const char *const a[] = {"alum", "chrome", "delrin", "nickel"}, *const b[] = {"brass", "zinc"}, *const c[] = {"chrome", "tin"};
+	const char *const a[] = {"alum", "chrome", "delrin", "nickel"}, *const b[] = {"brass", "zinc"},
+					  *const c[] = {"chrome", "tin"};
 	if (fixture_folder_make(state))
 		return -1;
 	fixture_archive(fixture_path("a.bpk"), a, 4, 1000);
@@ -175,10 +176,7 @@ static void an_output_may_be_one_of_the_inputs(void **state)
 	bp_archive_close(grow);
 }
 
-static bool stop_at_once(void)
-{
-	return true;
-}
+static bool stop_at_once(void) { return true; }
 
 static void stopping_and_damage_leave_nothing_behind(void **state)
 {
@@ -239,12 +237,18 @@ static void a_record_is_reused_when_source_options_and_codec_are_the_same(void *
 	free(got);
 	for (int n = 0; n < 6; n++) {
 		now = head;
-		if (n == 0) now.source.sha256[31] ^= 1;
-		if (n == 1) now.source.bytes++;
-		if (n == 2) now.options.budget_bytes++;
-		if (n == 3) now.options.effort++;
-		if (n == 4) now.options.max_error = 0.5;
-		if (n == 5) now.options.profile = PROFILE_SPECTRAL;
+		if (n == 0)
+			now.source.sha256[31] ^= 1;
+		if (n == 1)
+			now.source.bytes++;
+		if (n == 2)
+			now.options.budget_bytes++;
+		if (n == 3)
+			now.options.effort++;
+		if (n == 4)
+			now.options.max_error = 0.5;
+		if (n == 5)
+			now.options.profile = PROFILE_SPECTRAL;
 		assert_int_equal(archive_reuse(current, "delrin", &now.source, &now.options, &got, &bytes, NULL), BP_OK);
 		assert_null(got);
 	}

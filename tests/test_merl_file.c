@@ -30,8 +30,8 @@ static const char *in_folder(const char *name)
 struct image {
 	unsigned char *bytes;
 	size_t count;
-	size_t next;      /* reading position */
-	size_t piece;     /* most bytes that one read delivers */
+	size_t next;  /* reading position */
+	size_t piece; /* most bytes that one read delivers */
 };
 
 static struct image image_make(int32_t h, int32_t d, int32_t p)
@@ -91,7 +91,8 @@ static void expect_refusal(struct image *image, bool any_dims, const char *words
 {
 	struct lattice lattice = {0};
 	bp_error error = {0};
-	assert_int_equal(lattice_read(image_read, image, &(struct merl_reading){.any_dims = any_dims}, &lattice, &error), BP_ERROR_BAD_INPUT);
+	assert_int_equal(lattice_read(image_read, image, &(struct merl_reading){.any_dims = any_dims}, &lattice, &error),
+	                 BP_ERROR_BAD_INPUT);
 	if (!strstr(error.message, words))
 		fail_msg("\"%s\" lacks \"%s\"", error.message, words);
 	assert_null(lattice.block);
@@ -111,7 +112,10 @@ static void a_lattice_is_scaled_and_lies_plane_by_plane(void **state)
 		image_set(&image, 120 + 18, -1e-9);
 		image_set(&image, 240 + 19, NAN);
 		image_set(&image, 240 + 20, INFINITY);
-		assert_int_equal(lattice_read(image_read, &image, &(struct merl_reading){.seen = transcript_add, .seen_user = &seen, .any_dims = true}, &lattice, NULL), BP_OK);
+		assert_int_equal(lattice_read(image_read, &image,
+		                              &(struct merl_reading){.seen = transcript_add, .seen_user = &seen, .any_dims = true},
+		                              &lattice, NULL),
+		                 BP_OK);
 		assert_int_equal(lattice.dims.theta_h, 4);
 		assert_int_equal(lattice.dims.theta_d, 5);
 		assert_int_equal(lattice.dims.phi_d, 6);
@@ -300,7 +304,8 @@ static void values_beyond_the_range_of_the_file_stay_finite(void **state)
 		for (size_t n = 0; n < 64; n++)
 			table.rgb[c][n] = 100;
 	assert_int_equal(lattice_write_path(in_folder("huge.binary"), OUTPUT_REPLACE, &table, below, NULL, 0, NULL), BP_OK);
-	assert_int_equal(lattice_read_path(in_folder("huge.binary"), &(struct merl_reading){.any_dims = true}, &lattice, NULL), BP_OK);
+	assert_int_equal(lattice_read_path(in_folder("huge.binary"), &(struct merl_reading){.any_dims = true}, &lattice, NULL),
+	                 BP_OK);
 	assert_int_equal(lattice.valid_count, 64);
 	lattice_free(&lattice);
 	expansion_free(&table);
@@ -314,7 +319,8 @@ static void a_failed_write_names_the_path_and_leaves_nothing(void **state)
 	uint8_t below[64] = {0};
 	bp_error error;
 	assert_int_equal(expansion_alloc((struct lattice_dims){4, 4, 4}, &table, NULL), BP_OK);
-	assert_int_equal(lattice_write_path(in_folder("none/out.binary"), OUTPUT_REPLACE, &table, below, NULL, 0, &error), BP_ERROR_IO);
+	assert_int_equal(lattice_write_path(in_folder("none/out.binary"), OUTPUT_REPLACE, &table, below, NULL, 0, &error),
+	                 BP_ERROR_IO);
 	assert_non_null(strstr(error.message, in_folder("none/out.binary")));
 	assert_int_equal(mkdir(in_folder("taken"), 0700), 0); /* a folder of that name cannot be replaced */
 	assert_int_equal(lattice_write_path(in_folder("taken"), OUTPUT_REPLACE, &table, below, NULL, 0, &error), BP_ERROR_IO);

@@ -12,10 +12,7 @@
 
 static const struct lattice_dims SMALL = {4, 4, 4};
 
-static bool near(double a, double b, double tolerance)
-{
-	return fabs(a - b) <= tolerance;
-}
+static bool near(double a, double b, double tolerance) { return fabs(a - b) <= tolerance; }
 
 /* Every pixel of a size x size image covered and equal to (value, value, value). */
 static void image_make(uint32_t size, float value, struct sphere_image *image)
@@ -105,7 +102,7 @@ static void the_worst_cell_is_found_and_invalid_ones_are_passed_over(void **stat
 	lattice_validate(&lattice);
 	metrics_worst_cell(&lattice, &expansion, &worst);
 	assert_true(worst.value == 0);
-	expansion.rgb[0][5] = 1e6f;                        /* where nothing was measured */
+	expansion.rgb[0][5] = 1e6f;                          /* where nothing was measured */
 	expansion.rgb[2][lattice_index(SMALL, 2, 1, 3)] = 2; /* 4 instead of 1: 3/1.01 */
 	expansion.rgb[1][lattice_index(SMALL, 3, 3, 0)] = 1;
 	metrics_worst_cell(&lattice, &expansion, &worst);

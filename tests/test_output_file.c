@@ -15,8 +15,8 @@
 #include "bytes.h"
 #include "output_file.h"
 
-static bool names_only;   /* a file system without O_TMPFILE */
-static bool links_barred; /* a container that lets no file be named by its descriptor */
+static bool names_only;                   /* a file system without O_TMPFILE */
+static bool links_barred;                 /* a container that lets no file be named by its descriptor */
 static int folder_refusal, fsync_refusal; /* errno of opening, of syncing a folder; 0: it works */
 
 int open(const char *path, int flags, ...)
@@ -248,7 +248,8 @@ static void nobody_else_s_file_is_touched(void **state)
 		fixture_file_write(fixture_path(name), "precious", 8);
 	}
 	snprintf(name, sizeof name, ".brdfpack-%08x-1-0", bytes_crc32("out.bpk", 7));
-	fixture_file_write(fixture_path(name), "precious, and longer than what a sweep looks at, which is the first sixty-four bytes", 80);
+	fixture_file_write(fixture_path(name), "precious, and longer than what a sweep looks at, which is the first sixty-four bytes",
+	                   80);
 	static const char *const names[] = {"a", "b"};
 	fixture_archive(path, names, 2, 100);
 	fixture_archive(path, names, 2, 100);
@@ -307,7 +308,11 @@ static void a_scratch_file_has_no_name(void **state)
 	assert_int_equal(output_scratch_open(fixture_path("none/out"), &fd, NULL), BP_ERROR_IO);
 }
 
-#define EACH(test) cmocka_unit_test_setup(test, without_names), {#test " (named)", test, with_names, NULL, NULL}, {#test " (copied)", test, by_copies, NULL, NULL}
+#define EACH(test) \
+	cmocka_unit_test_setup(test, without_names), {#test " (named)", test, with_names, NULL, NULL}, \
+	{ \
+#test " (copied)", test, by_copies, NULL, NULL \
+	}
 
 int main(void)
 {

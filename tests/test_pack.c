@@ -31,7 +31,13 @@ static struct tables *tables_make(void)
 
 static bp_measured measured_of(const void *values, bp_number number, bp_layout layout)
 {
-	return (bp_measured){.struct_bytes = sizeof(bp_measured), .theta_h = 12, .theta_d = 10, .phi_d = 24, .number = number, .layout = layout, .values = values};
+	return (bp_measured){.struct_bytes = sizeof(bp_measured),
+	                     .theta_h = 12,
+	                     .theta_d = 10,
+	                     .phi_d = 24,
+	                     .number = number,
+	                     .layout = layout,
+	                     .values = values};
 }
 
 struct packed {
@@ -57,8 +63,10 @@ static void assert_same(struct packed a, struct packed b)
 static void all_layouts_and_numbers_give_the_record_of_the_lattice(void **state)
 {
 	struct tables *t = tables_make();
-	const bp_measured ways[] = {measured_of(t->planes, BP_NUMBER_DOUBLE, BP_LAYOUT_PLANES), measured_of(t->interleaved, BP_NUMBER_DOUBLE, BP_LAYOUT_INTERLEAVED),
-	                            measured_of(t->planes_f, BP_NUMBER_FLOAT, BP_LAYOUT_PLANES), measured_of(t->interleaved_f, BP_NUMBER_FLOAT, BP_LAYOUT_INTERLEAVED)};
+	const bp_measured ways[] = {measured_of(t->planes, BP_NUMBER_DOUBLE, BP_LAYOUT_PLANES),
+	                            measured_of(t->interleaved, BP_NUMBER_DOUBLE, BP_LAYOUT_INTERLEAVED),
+	                            measured_of(t->planes_f, BP_NUMBER_FLOAT, BP_LAYOUT_PLANES),
+	                            measured_of(t->interleaved_f, BP_NUMBER_FLOAT, BP_LAYOUT_INTERLEAVED)};
 	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = 60400, .effort = 5};
 	const struct record_source source = {0};
 	struct lattice lattice;
@@ -85,7 +93,9 @@ static void a_mask_says_what_negative_values_say(void **state)
 	struct tables *t = tables_make();
 	uint8_t mask[CELLS];
 	(void)state;
-	struct packed expected = pack(&(bp_measured){.struct_bytes = sizeof(bp_measured), .theta_h = 12, .theta_d = 10, .phi_d = 24, .values = t->planes_f}, "a", NULL);
+	struct packed expected = pack(
+		&(bp_measured){.struct_bytes = sizeof(bp_measured), .theta_h = 12, .theta_d = 10, .phi_d = 24, .values = t->planes_f},
+		"a", NULL);
 	for (size_t n = 0; n < CELLS; n++) {
 		mask[n] = n % 7 == 3 ? 0 : 9;
 		for (size_t c = 0; c < 3 && !mask[n]; c++)
@@ -135,7 +145,8 @@ static void options_are_those_of_build(void **state)
 	(void)state;
 	struct packed got = pack(&measured, "a", &options);
 	assert_int_equal(record_head_parse(got.bytes, got.count, &head, NULL), BP_OK);
-	assert_true(head.profile == PROFILE_PAPER && head.options.budget_bytes == 2000 && head.options.effort == 7 && got.count <= 2000);
+	assert_true(head.profile == PROFILE_PAPER && head.options.budget_bytes == 2000 && head.options.effort == 7 &&
+	            got.count <= 2000);
 	bp_free(got.bytes);
 	options = (bp_pack_options){.struct_bytes = sizeof options, .max_error = 0.01};
 	got = pack(&measured, "a", &options);
@@ -143,10 +154,15 @@ static void options_are_those_of_build(void **state)
 	assert_true(head.options.max_error == 0.01 && head.layers[head.layer_count - 1].fidelity.log_rmse <= 0.01);
 	bp_free(got.bytes);
 
-	const bp_pack_options bad[] = {{.struct_bytes = 8}, {.struct_bytes = sizeof options, .profile = 3}, {.struct_bytes = sizeof options, .budget_bytes = 999},
-	                               {.struct_bytes = sizeof options, .budget_bytes = 4000001}, {.struct_bytes = sizeof options, .max_error = NAN},
-	                               {.struct_bytes = sizeof options, .max_error = -1}, {.struct_bytes = sizeof options, .max_error = 11},
-	                               {.struct_bytes = sizeof options, .max_error = 0.1, .budget_bytes = 5000}, {.struct_bytes = sizeof options, .effort = 10}};
+	const bp_pack_options bad[] = {{.struct_bytes = 8},
+	                               {.struct_bytes = sizeof options, .profile = 3},
+	                               {.struct_bytes = sizeof options, .budget_bytes = 999},
+	                               {.struct_bytes = sizeof options, .budget_bytes = 4000001},
+	                               {.struct_bytes = sizeof options, .max_error = NAN},
+	                               {.struct_bytes = sizeof options, .max_error = -1},
+	                               {.struct_bytes = sizeof options, .max_error = 11},
+	                               {.struct_bytes = sizeof options, .max_error = 0.1, .budget_bytes = 5000},
+	                               {.struct_bytes = sizeof options, .effort = 10}};
 	for (size_t n = 0; n < sizeof bad / sizeof *bad; n++) {
 		got = (struct packed){.count = 5};
 		assert_int_equal(bp_pack(&measured, "a", &bad[n], &got.bytes, &got.count, &error), BP_ERROR_ARGUMENT);
@@ -181,7 +197,8 @@ static void bad_tables_are_refused(void **state)
 	assert_int_equal(bp_pack(NULL, "a", NULL, &got.bytes, &got.count, NULL), BP_ERROR_ARGUMENT);
 	assert_int_equal(bp_pack(&good, NULL, NULL, &got.bytes, &got.count, NULL), BP_ERROR_ARGUMENT);
 	for (int n = 0; n < 4; n++)
-		assert_int_equal(bp_pack(&good, (const char *const[]){"", "..", "a/b", "\xff"}[n], NULL, &got.bytes, &got.count, NULL), BP_ERROR_ARGUMENT);
+		assert_int_equal(bp_pack(&good, (const char *const[]){"", "..", "a/b", "\xff"}[n], NULL, &got.bytes, &got.count, NULL),
+		                 BP_ERROR_ARGUMENT);
 	for (size_t n = 0; n < 3 * CELLS; n++)
 		t->planes[n] = n % 2 ? NAN : INFINITY;
 	assert_int_equal(bp_pack(&good, "a", NULL, &got.bytes, &got.count, NULL), BP_ERROR_BAD_INPUT);
@@ -211,7 +228,11 @@ static void progress_is_told_and_any_call_may_cancel(void **state)
 	for (uint32_t profile = 1; profile <= 2; profile++)
 		for (int bounded = 0; bounded < 2; bounded++) {
 			struct told told = {0};
-			bp_pack_options options = {.struct_bytes = sizeof options, .profile = profile, .max_error = bounded ? 0.3 : 0, .progress = tell, .user = &told};
+			bp_pack_options options = {.struct_bytes = sizeof options,
+			                           .profile = profile,
+			                           .max_error = bounded ? 0.3 : 0,
+			                           .progress = tell,
+			                           .user = &told};
 			struct packed expected = pack(&measured, "a", &options);
 			assert_true(told.calls >= 5 && told.most <= 1 && told.most >= 0.8);
 			for (int at = 1, calls = told.calls, step = 1 + calls / 40; at <= calls; at += step) {
@@ -241,8 +262,8 @@ static void *packer_run(void *user)
 	struct packer *packer = user;
 	for (int n = 0; n < 3; n++) {
 		struct packed got = {0};
-		packer->failed |= bp_pack(packer->measured, "a", NULL, &got.bytes, &got.count, NULL) != BP_OK || got.count != packer->expected.count ||
-		                  memcmp(got.bytes, packer->expected.bytes, got.count) != 0;
+		packer->failed |= bp_pack(packer->measured, "a", NULL, &got.bytes, &got.count, NULL) != BP_OK ||
+		                  got.count != packer->expected.count || memcmp(got.bytes, packer->expected.bytes, got.count) != 0;
 		bp_free(got.bytes);
 	}
 	return NULL;
@@ -285,7 +306,9 @@ static bp_writer *writer_of(const char *const *names, size_t count)
 
 static void records_in_any_order_make_the_archive_of_sorted_ones(void **state)
 {
-	static const char *const MIXED[] = {"nickel", "\xc3\xa9mail", "alum", "Zinc", "brass"}, *const SORTED[] = {"Zinc", "alum", "brass", "nickel", "\xc3\xa9mail"};
+	static const char *const MIXED[] = {"nickel", "\xc3\xa9mail", "alum", "Zinc", "brass"}, *const SORTED[] = {"Zinc", "alum",
+	                                                                                                           "brass", "nickel",
+	                                                                                                           "\xc3\xa9mail"};
 	size_t count, expected_count;
 	uint8_t *bytes = NULL;
 	(void)state;
@@ -363,10 +386,7 @@ static int served_read(void *user, uint64_t offset, void *bytes, size_t count)
 	return 0;
 }
 
-static void served_close(void *user)
-{
-	((struct served *)user)->closed++;
-}
+static void served_close(void *user) { ((struct served *)user)->closed++; }
 
 static void memory_and_callbacks_give_what_the_file_gives(void **state)
 {
@@ -380,7 +400,8 @@ static void memory_and_callbacks_give_what_the_file_gives(void **state)
 	fixture_archive(fixture_path("f.bpk"), NAMES, 3, 300);
 	uint8_t *bytes = fixture_file_read(fixture_path("f.bpk"), &count);
 	struct served served = {.bytes = bytes, .count = count, .fails_from = UINT64_MAX};
-	bp_source source = {.struct_bytes = sizeof source, .read = served_read, .close = served_close, .user = &served, .bytes = count};
+	bp_source source = {
+		.struct_bytes = sizeof source, .read = served_read, .close = served_close, .user = &served, .bytes = count};
 	assert_int_equal(bp_archive_open(fixture_path("f.bpk"), &archive[0], NULL), BP_OK);
 	assert_int_equal(bp_archive_open_memory(bytes, count, &archive[1], NULL), BP_OK);
 	assert_int_equal(bp_archive_open_source(&source, &archive[2], NULL), BP_OK);

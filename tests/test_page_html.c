@@ -39,10 +39,13 @@ static void text_cannot_leave_its_place(void **user)
 		{"", ""},
 		{"plain name-1", "plain name-1"},
 		{"<b>&\"'</b>", "&lt;b&gt;&amp;&quot;&#39;&lt;/b&gt;"},
-		{"\xd9\x85\xf0\x9f\x8e\xa8", "\xd9\x85\xf0\x9f\x8e\xa8"},     /* two and four bytes */
-		{"a\xff" "b\xc0\x80", "a\xef\xbf\xbd" "b\xef\xbf\xbd\xef\xbf\xbd"}, /* no UTF-8 */
-		{"\xed\xa0\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"},     /* a surrogate */
-		{"cut \xe2\x82", "cut \xef\xbf\xbd\xef\xbf\xbd"},             /* an end within a sequence */
+		{"\xd9\x85\xf0\x9f\x8e\xa8", "\xd9\x85\xf0\x9f\x8e\xa8"}, /* two and four bytes */
+		{"a\xff"
+	     "b\xc0\x80",
+	     "a\xef\xbf\xbd"
+	     "b\xef\xbf\xbd\xef\xbf\xbd"},                                              /* no UTF-8 */
+		{"\xed\xa0\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"},                   /* a surrogate */
+		{"cut \xe2\x82", "cut \xef\xbf\xbd\xef\xbf\xbd"},                           /* an end within a sequence */
 		{"\n\x1b\x7f\xc2\x85", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"}, /* control characters */
 	};
 	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
@@ -59,8 +62,14 @@ static void text_cannot_leave_its_place(void **user)
 static void base64_is_that_of_the_standard(void **user)
 {
 	(void)user;
-	static const char *const cases[][2] = {{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="},
-	                                       {"foobar", "Zm9vYmFy"}, {"\xff\xef\xbe", "/+++"}};
+	static const char *const cases[][2] = {{"", ""},
+	                                       {"f", "Zg=="},
+	                                       {"fo", "Zm8="},
+	                                       {"foo", "Zm9v"},
+	                                       {"foob", "Zm9vYg=="},
+	                                       {"fooba", "Zm9vYmE="},
+	                                       {"foobar", "Zm9vYmFy"},
+	                                       {"\xff\xef\xbe", "/+++"}};
 	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
 		FILE *out = out_open();
 		html_base64(out, (const uint8_t *)cases[n][0], strlen(cases[n][0]));
@@ -77,7 +86,8 @@ static void a_picture_has_its_text_and_extents(void **user)
 	assert_int_equal(html_picture(out, &picture, "ball", "a \"b\"", NULL), BP_OK);
 	fclose(out);
 	write_u8(&printed, 0);
-	static const char head[] = "<img class=\"ball\" loading=lazy width=3 height=2 alt=\"a &quot;b&quot;\" src=\"data:image/png;base64,iVBORw0KGgo";
+	static const char head[] =
+		"<img class=\"ball\" loading=lazy width=3 height=2 alt=\"a &quot;b&quot;\" src=\"data:image/png;base64,iVBORw0KGgo";
 	assert_memory_equal(printed.bytes, head, sizeof head - 1);
 	assert_string_equal((const char *)printed.bytes + printed.count - 3, "\">");
 	byte_buffer_free(&printed);

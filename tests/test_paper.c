@@ -32,7 +32,8 @@ static double uniform(void)
 /* A smooth glossy material: a diffuse part, a lobe along theta_h, a Fresnel rise along theta_d, a touch of phi_d. */
 static double glossy(struct lattice_dims d, uint32_t i, uint32_t j, uint32_t k, int c)
 {
-	double h = pow((double)i / d.theta_h, 2) * 1.5707963, t = (double)j / d.theta_d * 1.5707963, p = (double)k / d.phi_d * 3.14159265;
+	double h = pow((double)i / d.theta_h, 2) * 1.5707963, t = (double)j / d.theta_d * 1.5707963,
+		   p = (double)k / d.phi_d * 3.14159265;
 	double lobe = 4 * exp(-20 * h * h) * (1 + 3 * pow(1 - cos(t), 3)) * (1 + 0.2 * cos(2 * p) * sin(t) * sin(h));
 	return (c == 0 ? 0.3 : c == 1 ? 0.2 : 0.1) * cos(t) + (c == 2 ? 0.9 : 1) * lobe;
 }
@@ -317,7 +318,8 @@ static void the_unit_of_the_input_does_not_matter(void **user)
 	fit_and_measure(&l, &other, &b);
 	for (int c = 0; c < 3; c++)
 		for (size_t i = 0; i < lattice_cells(d); i++)
-			assert_true(fabs(b.unit * (double)b.rgb[c][i] / 0x1p40 - a.unit * (double)a.rgb[c][i]) <= 1e-6 * a.unit * (double)a.rgb[c][i] + 1e-30);
+			assert_true(fabs(b.unit * (double)b.rgb[c][i] / 0x1p40 - a.unit * (double)a.rgb[c][i]) <=
+			            1e-6 * a.unit * (double)a.rgb[c][i] + 1e-30);
 	expansion_free(&a);
 	expansion_free(&b);
 	model_free(one);

@@ -14,10 +14,11 @@ static uint32_t random_below(uint32_t n)
 }
 
 /* `count` coefficients at random places of the plane, levels up to `largest`. */
-static void field_fill(struct lattice_dims dims, enum paper_field kind, uint32_t count, uint32_t largest, struct sparse_field *field)
+static void field_fill(struct lattice_dims dims, enum paper_field kind, uint32_t count, uint32_t largest,
+                       struct sparse_field *field)
 {
 	uint32_t cells = paper_plane_cells(dims, kind), index = 0;
-	*field = (struct sparse_field){ .count = count, .step = count ? PAPER_STEP_ONE - 8 * 256 : 0 };
+	*field = (struct sparse_field){.count = count, .step = count ? PAPER_STEP_ONE - 8 * 256 : 0};
 	paper_field_extents(dims, kind, &field->rows, &field->columns);
 	if (!count)
 		return;
@@ -42,7 +43,7 @@ static struct model *model_make(struct lattice_dims dims, uint32_t divisor_pair,
 {
 	struct model *model = calloc(1, sizeof *model);
 	struct paper_model *paper = calloc(1, sizeof *paper);
-	uint32_t extents[3] = { dims.theta_h, dims.theta_d, dims.phi_d };
+	uint32_t extents[3] = {dims.theta_h, dims.theta_d, dims.phi_d};
 	model->profile = PROFILE_PAPER;
 	model->dims = dims;
 	model->paper = paper;
@@ -60,15 +61,13 @@ static struct model *model_make(struct lattice_dims dims, uint32_t divisor_pair,
 		channel->slice_count = paper_shared_from(dims.theta_h) + 1;
 		channel->slice = calloc(channel->slice_count, sizeof *channel->slice);
 		for (uint32_t i = 0; i < channel->slice_count; i++)
-			field_fill(dims, PAPER_SLICE, divisor_slice ? extents[1] * extents[2] / divisor_slice : 0, largest, &channel->slice[i]);
+			field_fill(dims, PAPER_SLICE, divisor_slice ? extents[1] * extents[2] / divisor_slice : 0, largest,
+			           &channel->slice[i]);
 	}
 	return model;
 }
 
-static void model_drop(struct model *model)
-{
-	model_free(model);
-}
+static void model_drop(struct model *model) { model_free(model); }
 
 static void assert_fields_equal(const struct sparse_field *a, const struct sparse_field *b)
 {
@@ -88,7 +87,7 @@ struct packed {
 
 static bp_status pack(const struct model *model, uint32_t budget, struct packed *out, bp_error *error)
 {
-	struct encode_request request = { .name_bytes = 11, .record_bytes_max = budget };
+	struct encode_request request = {.name_bytes = 11, .record_bytes_max = budget};
 	struct model *decoded = NULL;
 	bp_status status;
 	memset(out, 0, sizeof *out);
@@ -114,7 +113,7 @@ static bp_status unpack(const struct packed *from, struct lattice_dims dims, uin
 	bp_status status;
 	model->dims = dims;
 	for (; count < from->sections.count && from->sections.entry[count].layer < layers; count++)
-		sections[count] = (struct section_bytes){ &from->sections.entry[count], from->sections.bytes[count].bytes };
+		sections[count] = (struct section_bytes){&from->sections.entry[count], from->sections.bytes[count].bytes};
 	model->profile = PROFILE_PAPER;
 	struct record_head head = from->head;
 	head.channels = wanted_channels;
@@ -142,7 +141,7 @@ static void assert_channels_equal(const struct paper_channel *a, const struct pa
 
 static void a_model_comes_back_equal(void **state)
 {
-	struct lattice_dims dims = { 90, 90, 180 };
+	struct lattice_dims dims = {90, 90, 180};
 	struct model *model = model_make(dims, 16, 64, 60), *again = NULL;
 	struct packed packed;
 	(void)state;
@@ -163,13 +162,13 @@ static void a_model_comes_back_equal(void **state)
 /* Sections say whose they are; with those of one channel alone the others are empty, and a table has its values in all three. */
 static void a_channel_decodes_alone(void **state)
 {
-	struct lattice_dims dims = { 8, 9, 10 };
+	struct lattice_dims dims = {8, 9, 10};
 	struct model *model = model_make(dims, 4, 4, 30), *again = NULL;
-	struct packed packed, alone = { .head = { .layer_count = 3 } };
+	struct packed packed, alone = {.head = {.layer_count = 3}};
 	struct expansion all, one;
 	(void)state;
 	for (int c = 0; c < 3; c++)
-		model->colour[c] = (struct colour_fit){ 0.25 * c, 1 + c, 1, 1, 0 };
+		model->colour[c] = (struct colour_fit){0.25 * c, 1 + c, 1, 1, 0};
 	assert_int_equal(pack(model, 200000, &packed, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(dims, &all, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(dims, &one, NULL), BP_OK);
@@ -194,7 +193,8 @@ static void a_channel_decodes_alone(void **state)
 		assert_int_equal(model_expand(again, 0, &one, NULL), BP_OK);
 		for (int k = 0; k < 3; k++)
 			for (size_t i = 0; i < lattice_cells(dims); i++)
-				assert_true(fabs(one.unit * (double)one.rgb[k][i] - all.unit * (double)all.rgb[c][i]) <= 1e-6 * all.unit * (double)all.rgb[c][i]);
+				assert_true(fabs(one.unit * (double)one.rgb[k][i] - all.unit * (double)all.rgb[c][i]) <=
+				            1e-6 * all.unit * (double)all.rgb[c][i]);
 		model_drop(again);
 	}
 	expansion_free(&all);
@@ -206,7 +206,7 @@ static void a_channel_decodes_alone(void **state)
 /* The largest record: every coefficient that the fractions allow, at random places, with random levels of 20 bits. */
 static void the_hardest_model_fits_the_papers_size(void **state)
 {
-	struct lattice_dims dims = { 90, 90, 180 };
+	struct lattice_dims dims = {90, 90, 180};
 	struct model *model = model_make(dims, 16, 64, PAPER_LEVEL_MAX);
 	struct packed packed;
 	(void)state;
@@ -218,7 +218,7 @@ static void the_hardest_model_fits_the_papers_size(void **state)
 
 static void pairs_that_are_1_take_no_bytes(void **state)
 {
-	struct lattice_dims dims = { 8, 8, 8 };
+	struct lattice_dims dims = {8, 8, 8};
 	struct model *model = model_make(dims, 0, 0, 100), *again = NULL;
 	struct packed packed;
 	(void)state;
@@ -236,7 +236,7 @@ static void pairs_that_are_1_take_no_bytes(void **state)
 
 static void the_second_layer_adds_the_pairs_only(void **state)
 {
-	struct lattice_dims dims = { 8, 8, 8 };
+	struct lattice_dims dims = {8, 8, 8};
 	struct model *model = model_make(dims, 4, 4, 100), *again = NULL;
 	struct packed packed;
 	(void)state;
@@ -252,9 +252,9 @@ static void the_second_layer_adds_the_pairs_only(void **state)
 /* Steps grow by one factor in every slice, so the smallest levels go first and none is coarser than half a step. */
 static void a_small_budget_coarsens_all_alike(void **state)
 {
-	struct lattice_dims dims = { 90, 90, 180 };
+	struct lattice_dims dims = {90, 90, 180};
 	struct model *model = model_make(dims, 16, 64, 3000), *again = NULL;
-	static const uint32_t budgets[] = { 60400, 30000, 10000, 4000 };
+	static const uint32_t budgets[] = {60400, 30000, 10000, 4000};
 	struct packed packed;
 	bp_error error;
 	(void)state;
@@ -298,7 +298,7 @@ static void marginals_are_stored_to_a_third_of_a_thousandth(void **state)
 
 static void damaged_sections_never_crash_the_decoder(void **state)
 {
-	struct lattice_dims dims = { 8, 8, 8 };
+	struct lattice_dims dims = {8, 8, 8};
 	struct model *model = model_make(dims, 4, 4, 100), *again = NULL;
 	struct packed packed;
 	(void)state;
@@ -324,7 +324,7 @@ static void damaged_sections_never_crash_the_decoder(void **state)
 
 static void a_claim_of_millions_of_coefficients_allocates_nothing(void **state)
 {
-	struct lattice_dims dims = { 256, 256, 256 };
+	struct lattice_dims dims = {256, 256, 256};
 	struct packed packed;
 	struct model *model = model_make(dims, 0, 0, 1), *again = NULL;
 	struct byte_buffer *out;

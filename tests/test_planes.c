@@ -55,7 +55,8 @@ static void coefficients_make(struct lattice_dims d, uint32_t one_in, float *con
 {
 	for (int f = 0; f < 3; f++)
 		for (size_t i = 0; i < lattice_cells(d); i++) {
-			const float size = (float)(1u << random_below(16)) * (1 + (float)(150 + random_below(850)) / 1000); /* beyond what settling thins */
+			const float size =
+				(float)(1u << random_below(16)) * (1 + (float)(150 + random_below(850)) / 1000); /* beyond what settling thins */
 			field[f][i] = random_below(one_in) ? 0 : random_below(2) ? size : -size;
 		}
 }
@@ -68,7 +69,8 @@ static void levels_come_back_from_any_prefix_of_units(void **unused)
 		for (uint32_t one_in = 2; one_in < 200; one_in *= 8) {
 			const struct lattice_dims d = dims[n];
 			const size_t cells = lattice_cells(d);
-			float *block = malloc(3 * cells * sizeof *block), *const field[3] = {block, block + cells, block + 2 * cells}, centre[2];
+			float *block = malloc(3 * cells * sizeof *block), *const field[3] = {block, block + cells, block + 2 * cells},
+				  centre[2];
 			struct planes *in = NULL, *out = NULL;
 			struct byte_buffer bytes = {0};
 			struct range_encoder encoder;
@@ -185,7 +187,8 @@ static void arbitrary_bytes_decode_to_something_legal(void **unused)
 			assert_int_equal(planes_decode_unit(planes, &coder, u, NULL), BP_OK);
 		assert_int_equal(planes_collect(planes, planes_units(planes), &levels, &count, NULL), BP_OK);
 		for (uint32_t i = 0; i < count; i++)
-			assert_true(levels[i].level != 0 && abs(levels[i].level) < 1 << SPECTRAL_PLANES_MAX && levels[i].at < 3 * lattice_cells(d));
+			assert_true(levels[i].level != 0 && abs(levels[i].level) < 1 << SPECTRAL_PLANES_MAX &&
+			            levels[i].at < 3 * lattice_cells(d));
 		free(levels);
 		planes_free(planes);
 	}
@@ -205,7 +208,8 @@ static void the_mixer_learns_what_a_bit_depends_on(void **unused)
 	for (int i = 0; i < 20000; i++) {
 		/* The bit is what context 2 says, nineteen times of twenty; the others know nothing. */
 		const uint32_t truth = random_below(2), bit = random_below(20) ? truth : !truth;
-		mixer_context *const context[4] = {&contexts[0][random_below(4)], &contexts[1][random_below(4)], &contexts[2][truth], &contexts[3][0]};
+		mixer_context *const context[4] = {&contexts[0][random_below(4)], &contexts[1][random_below(4)], &contexts[2][truth],
+		                                   &contexts[3][0]};
 		mixed_bit(&coder, 0, context, &weights, bit);
 	}
 	range_encoder_end(&encoder);
@@ -248,7 +252,8 @@ static void contexts_stay_probabilities_whatever_they_see(void **unused)
 	(void)unused;
 	for (uint32_t bit = 0; bit < 2; bit++)
 		for (uint32_t seen = 0; seen <= MIXER_SEEN_MAX_ALONE; seen++)
-			for (uint32_t p = 1; p < 1u << MIXER_PROBABILITY_BITS; p += p < 300 || p > (1u << MIXER_PROBABILITY_BITS) - 300 ? 1 : 4001) {
+			for (uint32_t p = 1; p < 1u << MIXER_PROBABILITY_BITS;
+			     p += p < 300 || p > (1u << MIXER_PROBABILITY_BITS) - 300 ? 1 : 4001) {
 				const uint32_t rate = tables->rate[seen], other = (1u << MIXER_PROBABILITY_BITS) - p;
 				const mixer_context context = mixer_context_learnt(tables, p << 10 | seen, bit, 250);
 				assert_int_equal(context >> 10, bit ? p + other / 64 * rate / 1024 : p - p / 64 * rate / 1024);

@@ -103,7 +103,8 @@ static void a_preview_of_one_in_a_hundred_reads_at_most_24_KiB_and_all_of_it_16_
 	assert_int_equal(archive_of_a_hundred(path, record, bytes), BP_OK);
 	assert_true(bytes > 50000 && head.layer_count > 1); /* or the test below says nothing */
 
-	bp_load_options load = {.struct_bytes = sizeof load, .form = BP_FORM_PREVIEW, .max_log_rmse = head.layers[0].fidelity.log_rmse};
+	bp_load_options load = {
+		.struct_bytes = sizeof load, .form = BP_FORM_PREVIEW, .max_log_rmse = head.layers[0].fidelity.log_rmse};
 	bp_loaded loaded = {.struct_bytes = sizeof loaded};
 	uint64_t preview = bytes_to_load(path, &load, &loaded);
 	assert_int_equal(loaded.layers, 1);

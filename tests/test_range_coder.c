@@ -15,7 +15,7 @@ static uint32_t random_below(uint32_t n)
 /* `ones` of 1000 bits are 1. */
 static size_t round_trip(uint32_t count, uint32_t ones)
 {
-	struct byte_buffer out = { 0 };
+	struct byte_buffer out = {0};
 	struct range_encoder encoder;
 	struct range_decoder decoder;
 	struct bit_model model;
@@ -61,7 +61,7 @@ static void carries_run_through(void **state)
 {
 	(void)state;
 	for (int turn = 0; turn < 200; turn++) {
-		struct byte_buffer out = { 0 };
+		struct byte_buffer out = {0};
 		struct range_encoder encoder;
 		struct range_decoder decoder;
 		struct bit_model models[2];
@@ -80,7 +80,7 @@ static void carries_run_through(void **state)
 
 static void numbers_come_back_over_the_whole_range(void **state)
 {
-	struct byte_buffer out = { 0 };
+	struct byte_buffer out = {0};
 	struct range_encoder encoder;
 	struct range_decoder decoder;
 	static struct gamma_model model;

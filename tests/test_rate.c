@@ -24,8 +24,10 @@ static int model_make(void **state)
 
 	model->coefficient[0] = malloc(3 * cells * sizeof(float));
 	for (size_t i = 0; i < 3 * cells; i++) {
-		const size_t lane = i % DIMS.phi_d, column = i / DIMS.phi_d % DIMS.theta_d, row = i / DIMS.phi_d / DIMS.theta_d % DIMS.theta_h;
-		const double fall = 40 / (1 + 0.02 * (double)(lane * lane) + 0.05 * (double)(row * row) + 0.05 * (double)(column * column));
+		const size_t lane = i % DIMS.phi_d, column = i / DIMS.phi_d % DIMS.theta_d,
+					 row = i / DIMS.phi_d / DIMS.theta_d % DIMS.theta_h;
+		const double fall =
+			40 / (1 + 0.02 * (double)(lane * lane) + 0.05 * (double)(row * row) + 0.05 * (double)(column * column));
 		seed = seed * 6364136223846793005u + 1442695040888963407u;
 		const double spread = (double)(int32_t)(seed >> 32) * 0x1p-31;
 		model->coefficient[0][i] = (float)(fall * spread * spread * spread);

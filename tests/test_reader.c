@@ -3,12 +3,12 @@
 #include <pthread.h>
 #include <sys/stat.h>
 
-static const char *const NAMES[] = { "brass", "chrome", "delrin", "nickel" };
+static const char *const NAMES[] = {"brass", "chrome", "delrin", "nickel"};
 
 static bp_archive *opened(const char *path)
 {
 	bp_archive *archive = NULL;
-	bp_error error = { 0 };
+	bp_error error = {0};
 	if (bp_archive_open(path, &archive, &error) != BP_OK)
 		fail_msg("%s", error.message);
 	return archive;
@@ -27,7 +27,8 @@ static void layers_and_sections_are_told(const bp_archive *archive, const bp_mat
 	/* fewer than there are: no more are written */
 	assert_int_equal(bp_archive_sections(archive, 2, sizeof *sections, sections, 2, &count, NULL), BP_OK);
 	assert_int_equal(count, 4);
-	assert_true(sections[1].type == SECTION_SLICES && sections[1].bytes == 5000 && sections[1].layer == 0 && isnan(sections[1].error));
+	assert_true(sections[1].type == SECTION_SLICES && sections[1].bytes == 5000 && sections[1].layer == 0 &&
+	            isnan(sections[1].error));
 	assert_true(sections[0].flags == SECTION_REQUIRED && sections[0].error == 0.125 && sections[2].type == 77);
 	assert_int_equal(bp_archive_sections(archive, 2, sizeof *sections - 4, sections, 2, &count, NULL), BP_ERROR_ARGUMENT);
 	assert_int_equal(bp_archive_layers(archive, 2, sizeof *layers, NULL, 2, &count, NULL), BP_ERROR_ARGUMENT);
@@ -38,7 +39,7 @@ static void layers_and_sections_are_told(const bp_archive *archive, const bp_mat
 static void an_archive_tells_its_materials_without_loading_them(void **state)
 {
 	bp_archive *archive;
-	bp_material_info info = { .struct_bytes = sizeof info };
+	bp_material_info info = {.struct_bytes = sizeof info};
 	uint64_t before;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 5000);
@@ -68,7 +69,7 @@ static void an_archive_tells_its_materials_without_loading_them(void **state)
 static void a_record_is_read_whole_and_checked(void **state)
 {
 	bp_archive *archive;
-	struct index_page leaf = { 0 };
+	struct index_page leaf = {0};
 	struct index_entry entry;
 	struct record_head head;
 	uint8_t *record, *expected;
@@ -88,14 +89,22 @@ static void a_record_is_read_whole_and_checked(void **state)
 
 static void what_is_not_an_archive_is_called_so(void **state)
 {
-	static const uint8_t text_mode[64] = "\x8b" "BPK\n\x1a\n"; /* CR LF became LF on the way */
+	static const uint8_t text_mode[64] = "\x8b"
+										 "BPK\n\x1a\n"; /* CR LF became LF on the way */
 	static const struct {
 		const void *bytes;
 		size_t count;
 		bp_status expected;
 	} cases[] = {
-		{ "", 0, BP_ERROR_NOT_OURS }, { "\x8b" "BPK", 4, BP_ERROR_NOT_OURS }, { text_mode, 64, BP_ERROR_NOT_OURS },
-		{ "\x8b" "BPK\r\n\x1a\n", 8, BP_ERROR_CORRUPT }, { "PK\3\4 and so on", 15, BP_ERROR_NOT_OURS },
+		{"", 0, BP_ERROR_NOT_OURS},
+		{"\x8b"
+	     "BPK",
+	     4, BP_ERROR_NOT_OURS},
+		{text_mode, 64, BP_ERROR_NOT_OURS},
+		{"\x8b"
+	     "BPK\r\n\x1a\n",
+	     8, BP_ERROR_CORRUPT},
+		{"PK\3\4 and so on", 15, BP_ERROR_NOT_OURS},
 	};
 	bp_archive *archive = NULL;
 	bp_error error;
@@ -155,7 +164,7 @@ static void newer_versions_and_hostile_headers_are_told_apart(void **state)
 static void a_file_cut_while_open_gives_an_error(void **state)
 {
 	bp_archive *archive;
-	bp_material_info info = { .struct_bytes = sizeof info };
+	bp_material_info info = {.struct_bytes = sizeof info};
 	bp_error error;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 5000);
@@ -180,8 +189,8 @@ static void verify_names_each_damaged_material(void **state)
 	size_t bytes;
 	uint8_t *file;
 	bp_archive *archive;
-	bp_material_info info = { .struct_bytes = sizeof info };
-	unsigned counts[2] = { 0, 0 };
+	bp_material_info info = {.struct_bytes = sizeof info};
+	unsigned counts[2] = {0, 0};
 	bp_error error;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 500);
@@ -209,7 +218,7 @@ static void *read_everything(void *user)
 	bp_archive *archive = user;
 	for (int turn = 0; turn < 50; turn++)
 		for (uint64_t i = 0; i < 4; i++) {
-			bp_material_info info = { .struct_bytes = sizeof info };
+			bp_material_info info = {.struct_bytes = sizeof info};
 			uint64_t found;
 			if (bp_archive_find(archive, NAMES[i], &found, NULL) != BP_OK || found != i ||
 			    bp_archive_info(archive, i, &info, NULL) != BP_OK || strcmp(info.name, NAMES[i]) != 0)

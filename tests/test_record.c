@@ -97,24 +97,43 @@ static void hostile_values_under_a_right_checksum_are_refused(void **state)
 		unsigned width;
 		bp_status expected;
 	} cases[] = {
-		{ 8, 0, 4, BP_ERROR_CORRUPT }, { 8, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* head bytes */
-		{ 12, 0, 4, BP_ERROR_CORRUPT }, { 12, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* record bytes */
-		{ 16, 1, 2, BP_ERROR_UNSUPPORTED }, /* record version */
-		{ 24, 3, 2, BP_ERROR_CORRUPT }, { 26, 1025, 2, BP_ERROR_CORRUPT }, { 28, 0, 2, BP_ERROR_CORRUPT }, /* extents */
-		{ 30, 0, 1, BP_ERROR_CORRUPT }, { 30, 255, 1, BP_ERROR_CORRUPT }, /* name bytes */
-		{ 31, 0, 1, BP_ERROR_CORRUPT }, { 31, 17, 1, BP_ERROR_CORRUPT }, /* layers */
-		{ 32, 65, 2, BP_ERROR_CORRUPT }, { 32, 65535, 2, BP_ERROR_CORRUPT }, /* sections */
-		{ 40, nan_bits, 8, BP_ERROR_CORRUPT }, { 40, minus_one, 8, BP_ERROR_CORRUPT }, /* max error */
-		{ 48, 10, 4, BP_ERROR_CORRUPT }, { 52, 1, 4, BP_ERROR_CORRUPT }, /* effort, reserved */
-		{ 56, nan_bits, 8, BP_ERROR_CORRUPT }, { 56, two, 8, BP_ERROR_CORRUPT }, /* horizon */
-		{ 112, nan_bits, 8, BP_ERROR_CORRUPT }, { 120, infinity, 8, BP_ERROR_CORRUPT }, { 128, two, 8, BP_ERROR_CORRUPT },
-		{ 140, 2, 4, BP_ERROR_CORRUPT }, /* converged */
-		{ 208, 0, 4, BP_ERROR_CORRUPT }, { 212, 0xBF800000, 4, BP_ERROR_CORRUPT }, { 216, nan_bits, 8, BP_ERROR_CORRUPT }, /* layer 0 */
-		{ 272 + 6, 2, 2, BP_ERROR_CORRUPT }, { 272 + 10, 1, 2, BP_ERROR_CORRUPT }, /* section 0: layer, reserved */
-		{ 272 + 12, 0, 4, BP_ERROR_CORRUPT }, { 272 + 12, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* offset */
-		{ 272 + 16, 0, 4, BP_ERROR_CORRUPT }, { 272 + 16, UINT32_MAX, 4, BP_ERROR_CORRUPT }, /* bytes */
-		{ 272 + 128, '/', 1, BP_ERROR_CORRUPT }, { 272 + 128, 0xFF, 1, BP_ERROR_CORRUPT }, /* the name */
-		{ 272, 999, 2, BP_OK }, { 18, 999, 2, BP_OK }, /* unknown section type and profile: for the decoder to judge */
+		{8, 0, 4, BP_ERROR_CORRUPT},
+		{8, UINT32_MAX, 4, BP_ERROR_CORRUPT}, /* head bytes */
+		{12, 0, 4, BP_ERROR_CORRUPT},
+		{12, UINT32_MAX, 4, BP_ERROR_CORRUPT}, /* record bytes */
+		{16, 1, 2, BP_ERROR_UNSUPPORTED},      /* record version */
+		{24, 3, 2, BP_ERROR_CORRUPT},
+		{26, 1025, 2, BP_ERROR_CORRUPT},
+		{28, 0, 2, BP_ERROR_CORRUPT}, /* extents */
+		{30, 0, 1, BP_ERROR_CORRUPT},
+		{30, 255, 1, BP_ERROR_CORRUPT}, /* name bytes */
+		{31, 0, 1, BP_ERROR_CORRUPT},
+		{31, 17, 1, BP_ERROR_CORRUPT}, /* layers */
+		{32, 65, 2, BP_ERROR_CORRUPT},
+		{32, 65535, 2, BP_ERROR_CORRUPT}, /* sections */
+		{40, nan_bits, 8, BP_ERROR_CORRUPT},
+		{40, minus_one, 8, BP_ERROR_CORRUPT}, /* max error */
+		{48, 10, 4, BP_ERROR_CORRUPT},
+		{52, 1, 4, BP_ERROR_CORRUPT}, /* effort, reserved */
+		{56, nan_bits, 8, BP_ERROR_CORRUPT},
+		{56, two, 8, BP_ERROR_CORRUPT}, /* horizon */
+		{112, nan_bits, 8, BP_ERROR_CORRUPT},
+		{120, infinity, 8, BP_ERROR_CORRUPT},
+		{128, two, 8, BP_ERROR_CORRUPT},
+		{140, 2, 4, BP_ERROR_CORRUPT}, /* converged */
+		{208, 0, 4, BP_ERROR_CORRUPT},
+		{212, 0xBF800000, 4, BP_ERROR_CORRUPT},
+		{216, nan_bits, 8, BP_ERROR_CORRUPT}, /* layer 0 */
+		{272 + 6, 2, 2, BP_ERROR_CORRUPT},
+		{272 + 10, 1, 2, BP_ERROR_CORRUPT}, /* section 0: layer, reserved */
+		{272 + 12, 0, 4, BP_ERROR_CORRUPT},
+		{272 + 12, UINT32_MAX, 4, BP_ERROR_CORRUPT}, /* offset */
+		{272 + 16, 0, 4, BP_ERROR_CORRUPT},
+		{272 + 16, UINT32_MAX, 4, BP_ERROR_CORRUPT}, /* bytes */
+		{272 + 128, '/', 1, BP_ERROR_CORRUPT},
+		{272 + 128, 0xFF, 1, BP_ERROR_CORRUPT}, /* the name */
+		{272, 999, 2, BP_OK},
+		{18, 999, 2, BP_OK}, /* unknown section type and profile: for the decoder to judge */
 	};
 	(void)state;
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
@@ -149,7 +168,7 @@ static void dropping_layers_keeps_the_other_sections_byte_for_byte(void **state)
 
 static void sections_out_of_order_are_not_written(void **state)
 {
-	struct section_list sections = { 0 };
+	struct section_list sections = {0};
 	struct record_head head;
 	uint8_t *record;
 	size_t bytes;

@@ -19,7 +19,8 @@
 #include "packed_fixture.h"
 
 static const struct lattice_dims DIMS = {20, 16, 24};
-static const struct fit_options USUAL[2] = {{.profile = PROFILE_PAPER, .budget_bytes = 9000, .effort = 5}, {.profile = PROFILE_SPECTRAL, .budget_bytes = 9000, .effort = 5}};
+static const struct fit_options USUAL[2] = {{.profile = PROFILE_PAPER, .budget_bytes = 9000, .effort = 5},
+                                            {.profile = PROFILE_SPECTRAL, .budget_bytes = 9000, .effort = 5}};
 static const struct record_source MEASURED = {.bytes = 1, .sha256 = {1}, .nonfinite_count = 3};
 
 /* A record and the table that it decodes to. */
@@ -52,7 +53,8 @@ static void packed_make(const struct fit_options *options, struct packed *packed
 	assert_int_equal(lattice_below_horizon(DIMS, LATTICE_MERL_HORIZON, below, NULL), BP_OK);
 	for (size_t n = 0; n < sizeof below; n++)
 		for (int c = 0; c < 3; c++)
-			lattice.rgb[c][n] = below[n] ? -1 : lattice.rgb[c][n] * (1 + 0.3 * sin((double)(n * (size_t)(c + 3)))); /* rough: the budget binds */
+			lattice.rgb[c][n] =
+				below[n] ? -1 : lattice.rgb[c][n] * (1 + 0.3 * sin((double)(n * (size_t)(c + 3)))); /* rough: the budget binds */
 	lattice_validate(&lattice);
 	assert_int_equal(record_encode(&lattice, "first", &MEASURED, options, &packed->record, &packed->bytes, NULL, NULL), BP_OK);
 	decode(packed);
@@ -86,7 +88,8 @@ static void extracted(const struct packed *packed, const uint8_t *carried, size_
 	assert_true(fd >= 0);
 	close(fd);
 	assert_int_equal(lattice_write_path(path, OUTPUT_REPLACE, &packed->table, packed->below, carried, bytes, NULL), BP_OK);
-	assert_int_equal(lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = &out->carried}, &out->lattice, NULL), BP_OK);
+	assert_int_equal(
+		lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = &out->carried}, &out->lattice, NULL), BP_OK);
 	unlink(path);
 }
 
@@ -127,7 +130,8 @@ static void another_name_is_all_that_changes(void **state)
 		struct file file;
 		packed_make(&USUAL[p], &first);
 		extracted(&first, first.record, first.bytes, &file);
-		assert_int_equal(record_carried(&file.lattice, &file.carried, "second", &USUAL[p], &again.record, &again.bytes, NULL), BP_OK);
+		assert_int_equal(record_carried(&file.lattice, &file.carried, "second", &USUAL[p], &again.record, &again.bytes, NULL),
+		                 BP_OK);
 		assert_non_null(again.record);
 		decode(&again);
 		for (int c = 0; c < 3; c++)
@@ -188,7 +192,7 @@ static void another_request_is_packed_anew(void **state)
 	assert_true(kept(&file, "four", options));
 	assert_false(kept(&file, "m", USUAL[0]));
 	options = (struct fit_options){.profile = PROFILE_SPECTRAL, .budget_bytes = 100000, .max_error = 0.01, .effort = 5};
-	assert_false(kept(&file, "m", options)); /* a smaller record might do */
+	assert_false(kept(&file, "m", options));        /* a smaller record might do */
 	assert_false(kept(&file, "no/name", USUAL[1])); /* record_encode says why */
 	file_free(&file);
 	packed_free(&first);
@@ -229,13 +233,15 @@ static void a_damaged_or_foreign_record_is_not_kept(void **state)
 }
 
 /* The record with its sections and head as `change` leaves them; it has all its checksums. */
-static void foreign_make(const struct packed *first, void (*change)(struct record_head *, struct section_list *), uint8_t **record, size_t *bytes)
+static void foreign_make(const struct packed *first, void (*change)(struct record_head *, struct section_list *),
+                         uint8_t **record, size_t *bytes)
 {
 	struct section_list sections = {0};
 	struct record_head head = first->head;
 	for (uint32_t i = 0; i < head.section_count; i++) {
 		const struct record_section *entry = &head.sections[i];
-		write_bytes(section_add(&sections, (enum section_type)entry->type, entry->codec, entry->version, entry->layer, entry->flags, entry->error),
+		write_bytes(section_add(&sections, (enum section_type)entry->type, entry->codec, entry->version, entry->layer,
+		                        entry->flags, entry->error),
 		            first->record + entry->offset, entry->bytes);
 	}
 	change(&head, &sections);
@@ -274,8 +280,8 @@ static void with_a_section_that_is_not(struct record_head *head, struct section_
 static void a_record_that_does_not_decode_layer_by_layer_is_not_kept(void **state)
 {
 	(void)state;
-	static void (*const changes[])(struct record_head *, struct section_list *) = {all_in_the_last_layer, of_other_extents,
-	                                                                               with_a_section_that_is_required, with_a_section_that_is_not};
+	static void (*const changes[])(struct record_head *, struct section_list *) = {
+		all_in_the_last_layer, of_other_extents, with_a_section_that_is_required, with_a_section_that_is_not};
 	for (int p = 0; p < 2; p++) {
 		struct packed first;
 		packed_make(&USUAL[p], &first);

@@ -28,14 +28,14 @@ static void lattice_make(struct lattice_dims dims, double size, struct lattice *
 	lattice_validate(out);
 }
 
-static const struct lattice_dims DIMS[] = { { 12, 10, 14 }, { 4, 4, 4 }, { 9, 16, 8 }, { 16, 5, 6 }, { 17, 16, 5 } };
+static const struct lattice_dims DIMS[] = {{12, 10, 14}, {4, 4, 4}, {9, 16, 8}, {16, 5, 6}, {17, 16, 5}};
 enum { DIMS_COUNT = sizeof DIMS / sizeof *DIMS };
 
 static bp_status pack(const struct lattice *lattice, uint32_t budget, double max_error, uint8_t **record, size_t *bytes,
                       struct record_head *head, bp_error *error)
 {
-	struct fit_options options = { .profile = tested, .budget_bytes = budget, .max_error = max_error, .effort = 5 };
-	struct record_source source = { .bytes = 1234, .sha256 = { 1, 2, 3 }, .nonfinite_count = 7 };
+	struct fit_options options = {.profile = tested, .budget_bytes = budget, .max_error = max_error, .effort = 5};
+	struct record_source source = {.bytes = 1234, .sha256 = {1, 2, 3}, .nonfinite_count = 7};
 	return record_encode(lattice, "material", &source, &options, record, bytes, head, error);
 }
 
@@ -93,7 +93,7 @@ static void a_budget_is_kept_or_the_least_one_is_named(void **state)
 	struct record_head head;
 	uint8_t *record = NULL;
 	size_t bytes;
-	bp_error error = { 0 };
+	bp_error error = {0};
 	(void)state;
 	lattice_make(DIMS[0], 1, &lattice);
 	assert_int_equal(pack(&lattice, 60400, 0, &record, &bytes, NULL, NULL), BP_OK);
@@ -121,7 +121,7 @@ static void a_budget_is_used_to_the_last_hundredth(void **state)
 	(void)state;
 	if (tested != PROFILE_SPECTRAL)
 		return;
-	lattice_make((struct lattice_dims){ 32, 32, 32 }, 1, &lattice);
+	lattice_make((struct lattice_dims){32, 32, 32}, 1, &lattice);
 	for (uint32_t budget = 1000; budget < 21000; budget = budget * 13 / 10) {
 		assert_int_equal(pack(&lattice, budget, 0, &record, &bytes, NULL, NULL), BP_OK);
 		assert_true(bytes <= budget && (double)bytes >= 0.99 * (double)budget);
@@ -136,9 +136,9 @@ static void an_error_can_be_asked_for_instead(void **state)
 	struct record_head full, head;
 	uint8_t *record = NULL;
 	size_t full_bytes, bytes;
-	bp_error error = { 0 };
+	bp_error error = {0};
 	(void)state;
-	lattice_make((struct lattice_dims){ 32, 32, 32 }, 1, &lattice);
+	lattice_make((struct lattice_dims){32, 32, 32}, 1, &lattice);
 	assert_int_equal(pack(&lattice, 60400, 0, &record, &full_bytes, &full, NULL), BP_OK);
 	free(record);
 	double least = full.layers[full.layer_count - 1].fidelity.log_rmse;
@@ -148,7 +148,8 @@ static void an_error_can_be_asked_for_instead(void **state)
 	free(record);
 	record = NULL;
 	/* The paper's profile keeps a fixed share of its coefficients; the spectral one ends where float does. */
-	assert_int_equal(pack(&lattice, 0, tested == PROFILE_PAPER ? least * 0.5 : 1e-12, &record, &bytes, &head, &error), BP_ERROR_LIMIT);
+	assert_int_equal(pack(&lattice, 0, tested == PROFILE_PAPER ? least * 0.5 : 1e-12, &record, &bytes, &head, &error),
+	                 BP_ERROR_LIMIT);
 	assert_non_null(strstr(error.message, "the least is"));
 	assert_null(record);
 	lattice_free(&lattice);
@@ -156,7 +157,7 @@ static void an_error_can_be_asked_for_instead(void **state)
 
 static void sizes_of_all_orders_pack_and_come_back_finite(void **state)
 {
-	static const double sizes[] = { 1e-300, 1e-12, 1e12, 1e300, 0 };
+	static const double sizes[] = {1e-300, 1e-12, 1e12, 1e300, 0};
 	(void)state;
 	for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
 		struct lattice lattice;
@@ -182,8 +183,8 @@ static void sizes_of_all_orders_pack_and_come_back_finite(void **state)
 
 static void an_illegal_name_is_refused(void **state)
 {
-	struct fit_options options = { .profile = tested, .budget_bytes = 60400, .effort = 5 };
-	struct record_source source = { 0 };
+	struct fit_options options = {.profile = tested, .budget_bytes = 60400, .effort = 5};
+	struct record_source source = {0};
 	struct lattice lattice;
 	uint8_t *record = NULL;
 	size_t bytes;

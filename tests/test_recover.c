@@ -40,7 +40,7 @@ static void assert_saved(const char *path, const bool *damaged)
 	assert_int_equal(bp_archive_open(path, &archive, NULL), BP_OK);
 	assert_int_equal(bp_archive_verify(archive, 0, NULL, NULL, NULL), BP_OK);
 	for (int i = 0; i < COUNT; i++) {
-		struct index_page leaf = { 0 };
+		struct index_page leaf = {0};
 		struct index_entry entry;
 		struct record_head head;
 		uint8_t *record, *expected;
@@ -62,14 +62,14 @@ static void assert_saved(const char *path, const bool *damaged)
 
 static void holes_cost_only_the_materials_they_hit(void **state)
 {
-	static const int holes[] = { 0, 1, 10, 100 };
+	static const int holes[] = {0, 1, 10, 100};
 	size_t bytes, record_bytes;
 	uint8_t *file;
 	(void)state;
 	archive_make(fixture_path("whole.bpk"));
 	free(fixture_record(names[0], 2, SECTION_BYTES, &record_bytes));
 	for (size_t turn = 0; turn < 4 * sizeof holes / sizeof *holes; turn++) {
-		bool damaged[COUNT] = { false };
+		bool damaged[COUNT] = {false};
 		unsigned lost_told = 0, lost = 0;
 		struct recovery recovery;
 		bp_error error;
@@ -102,7 +102,7 @@ static void holes_cost_only_the_materials_they_hit(void **state)
 
 static void a_lost_header_and_index_do_not_matter(void **state)
 {
-	const bool damaged[COUNT] = { false };
+	const bool damaged[COUNT] = {false};
 	struct recovery recovery;
 	size_t bytes;
 	uint8_t *file;
@@ -112,7 +112,8 @@ static void a_lost_header_and_index_do_not_matter(void **state)
 	memset(file, 0, ARCHIVE_HEADER_BYTES);
 	fixture_file_write(fixture_path("headless.bpk"), file, bytes - PAGE_BYTES + 100);
 	free(file);
-	assert_int_equal(archive_recover(fixture_path("headless.bpk"), fixture_path("saved.bpk"), NULL, NULL, &recovery, NULL), BP_OK);
+	assert_int_equal(archive_recover(fixture_path("headless.bpk"), fixture_path("saved.bpk"), NULL, NULL, &recovery, NULL),
+	                 BP_OK);
 	assert_int_equal(recovery.saved, COUNT);
 	assert_int_equal(recovery.lost, 0);
 	assert_saved(fixture_path("saved.bpk"), damaged);
@@ -120,7 +121,7 @@ static void a_lost_header_and_index_do_not_matter(void **state)
 
 static void of_two_archives_in_one_file_each_material_is_saved_once(void **state)
 {
-	const bool damaged[COUNT] = { false };
+	const bool damaged[COUNT] = {false};
 	unsigned told = 0;
 	struct recovery recovery;
 	size_t bytes;
@@ -132,7 +133,8 @@ static void of_two_archives_in_one_file_each_material_is_saved_once(void **state
 	memcpy(twice, file, bytes);
 	memcpy(twice + bytes, file, bytes);
 	fixture_file_write(fixture_path("twice.bpk"), twice, 2 * bytes);
-	assert_int_equal(archive_recover(fixture_path("twice.bpk"), fixture_path("saved.bpk"), count_loss, &told, &recovery, NULL), BP_OK);
+	assert_int_equal(archive_recover(fixture_path("twice.bpk"), fixture_path("saved.bpk"), count_loss, &told, &recovery, NULL),
+	                 BP_OK);
 	assert_int_equal(told, COUNT);
 	assert_saved(fixture_path("saved.bpk"), damaged);
 	free(file);
@@ -144,11 +146,14 @@ static void what_holds_no_record_is_refused_and_the_damaged_one_may_be_replaced(
 	struct recovery recovery;
 	(void)state;
 	fixture_file_write(fixture_path("text"), "not an archive, and long enough to be looked at", 47);
-	assert_int_equal(archive_recover(fixture_path("text"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL), BP_ERROR_NOT_FOUND);
+	assert_int_equal(archive_recover(fixture_path("text"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL),
+	                 BP_ERROR_NOT_FOUND);
 	assert_int_equal(access(fixture_path("none.bpk"), F_OK), -1);
 	fixture_file_write(fixture_path("text"), "", 0);
-	assert_int_equal(archive_recover(fixture_path("text"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL), BP_ERROR_NOT_FOUND);
-	assert_int_equal(archive_recover(fixture_path("missing"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL), BP_ERROR_IO);
+	assert_int_equal(archive_recover(fixture_path("text"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL),
+	                 BP_ERROR_NOT_FOUND);
+	assert_int_equal(archive_recover(fixture_path("missing"), fixture_path("none.bpk"), NULL, NULL, &recovery, NULL),
+	                 BP_ERROR_IO);
 	archive_make(fixture_path("whole.bpk"));
 	assert_int_equal(archive_recover(fixture_path("whole.bpk"), fixture_path("whole.bpk"), NULL, NULL, &recovery, NULL), BP_OK);
 	assert_int_equal(recovery.lost, 0);

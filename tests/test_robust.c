@@ -20,10 +20,7 @@ static double uniform(void)
 	state = state * 6364136223846793005u + 1442695040888963407u;
 	return ((double)(state >> 12) + 0.5) * 0x1p-52;
 }
-static double normal(void)
-{
-	return sqrt(-2 * log(uniform())) * cos(6.283185307179586 * uniform());
-}
+static double normal(void) { return sqrt(-2 * log(uniform())) * cos(6.283185307179586 * uniform()); }
 
 /* Both coefficients within `tolerance` of GSL's, relative to each, or to the size of the terms where a coefficient is 0. */
 static void assert_agrees(const double *x, const double *y, size_t n, double tolerance)
@@ -131,7 +128,8 @@ static void a_constant_x_splits_the_robust_mean_as_gsl_does(void **user)
 			assert_true(fabs(level - slow.intercept) <= 1e-9 * slow.intercept);
 			if (n > 50 || k > 1)
 				continue;
-			double share = fit.slope * values[k] / level, gsl_share = gsl.slope * values[k] / (gsl.intercept + gsl.slope * values[k]);
+			double share = fit.slope * values[k] / level,
+				   gsl_share = gsl.slope * values[k] / (gsl.intercept + gsl.slope * values[k]);
 			assert_true(fabs(share - gsl_share) <= 1e-6);
 			for (size_t i = 0; i < n; i++)
 				ys[i] = 3;
@@ -247,8 +245,10 @@ static void a_crowd_far_from_zero_is_fitted_to_the_last_digits(void **user)
 		const double width = 0.02 + 0.06 * uniform();
 		for (int falling = 0; falling < 2; falling++) {
 			for (size_t i = 0; i < CELLS; i++) {
-				const double h = (double)(i / SIDE / SIDE) / SIDE, d = (double)(i / SIDE % SIDE) / SIDE, p = (double)(i % SIDE) / SIDE;
-				const double lobe = exp(-h * h * h * h / (width * width)) * (1 + 3 * pow(d, 5)) * (1 + 0.2 * d * cos(6.283185307179586 * p));
+				const double h = (double)(i / SIDE / SIDE) / SIDE, d = (double)(i / SIDE % SIDE) / SIDE,
+							 p = (double)(i % SIDE) / SIDE;
+				const double lobe =
+					exp(-h * h * h * h / (width * width)) * (1 + 3 * pow(d, 5)) * (1 + 0.2 * d * cos(6.283185307179586 * p));
 				const double value = 0.1 + 5 * lobe, rest = fmax(0, 20 - value);
 				xs[i] = (double)(float)(value + rest + value * value);
 				ys[i] = falling ? rest : value;
@@ -291,7 +291,8 @@ static void an_intercept_of_next_to_nothing_does_not_end_the_iterations_early(vo
 		/* The reference itself still moves where it stops. */
 		const double step = oracle_deviation(slow.intercept - slow.step[0], slow.slope - slow.step[1], &slow, xs, n);
 		if (!slow.status && isfinite(slow.slope))
-			worst = fmax(worst, oracle_deviation(fit.intercept, fit.slope, &slow, xs, n) - (fit.iterations == slow.iterations ? 0 : 4 * step));
+			worst = fmax(worst, oracle_deviation(fit.intercept, fit.slope, &slow, xs, n) -
+			                        (fit.iterations == slow.iterations ? 0 : 4 * step));
 	}
 	assert_true(worst <= 1e-12);
 }

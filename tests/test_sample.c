@@ -61,7 +61,8 @@ static double integrate_directly(const struct sampler *s, const float wo[3])
 	double sum = 0;
 	for (int a = 0; a < STEPS; a++)
 		for (int b = 0; b < STEPS; b++) {
-			const double v = (a + 0.5) / STEPS, w = 2 * (b + 0.5) / STEPS - 1, z = v * v * v, phi = opposite + M_PI * w * w * w, r = sqrt(1 - z * z);
+			const double v = (a + 0.5) / STEPS, w = 2 * (b + 0.5) / STEPS - 1, z = v * v * v, phi = opposite + M_PI * w * w * w,
+						 r = sqrt(1 - z * z);
 			const float wi[3] = {(float)(r * cos(phi)), (float)(r * sin(phi)), (float)z};
 			sum += (double)sampler_pdf(s, wi, wo) * 3 * v * v / STEPS * 3 * w * w * M_PI * 2 / STEPS;
 		}
@@ -135,7 +136,8 @@ static void the_mean_weight_is_the_albedo_and_its_spread_is_small(void **user)
 				fail_msg("kind %d at %g degrees: albedo %g by quadrature, %g given", kind, DEGREES[n], albedo, given);
 			/* half a percent, and three standard errors of the sampling itself */
 			if (fabs(mean - albedo) > (0.005 + 3 * deviation / sqrt(20000)) * albedo)
-				fail_msg("kind %d at %g degrees: albedo %g by quadrature, %g by sampling (spread %g)", kind, DEGREES[n], albedo, mean, deviation);
+				fail_msg("kind %d at %g degrees: albedo %g by quadrature, %g by sampling (spread %g)", kind, DEGREES[n], albedo,
+				         mean, deviation);
 			/* near grazing cosine samples miss the highlight, and with it its spread */
 			if ((kind == GLOSSY || kind == MIRROR) && DEGREES[n] <= 70 && !(deviation < cosine))
 				fail_msg("kind %d at %g degrees: spread %g, of cosine sampling %g", kind, DEGREES[n], deviation, cosine);
@@ -157,13 +159,15 @@ static void the_kept_albedo_is_the_integrated_one(void **user)
 		assert_int_equal(albedo_cache_make(&cache, NULL), BP_OK);
 		assert_int_equal(albedo_cache_make(&other, NULL), BP_OK);
 		for (int n = 0; n < 30; n++) {
-			float theta = (float)(M_PI_2 * (n % 2 ? fmod(n * 0.381966, 1) : 1 - pow(10, -4 * fmod(n * 0.381966, 1)))), want[3], got[3], again[3];
+			float theta = (float)(M_PI_2 * (n % 2 ? fmod(n * 0.381966, 1) : 1 - pow(10, -4 * fmod(n * 0.381966, 1)))), want[3],
+				  got[3], again[3];
 			theta = theta < 1.5707f ? theta : 1.5707f;
 			albedo_integrate(m.table, theta, want);
 			albedo_cached(cache, m.table, theta, got);
 			for (int c = 0; c < 3; c++)
 				if (fabsf(got[c] - want[c]) > 1e-3f * want[c])
-					fail_msg("kind %d at %g radians: albedo %g integrated, %g kept", kind, (double)theta, (double)want[c], (double)got[c]);
+					fail_msg("kind %d at %g radians: albedo %g integrated, %g kept", kind, (double)theta, (double)want[c],
+					         (double)got[c]);
 			albedo_cached(cache, m.table, theta, again);
 			assert_memory_equal(got, again, sizeof got);
 			if (kind != GLOSSY)
@@ -192,7 +196,8 @@ static double albedo_about(const struct table *table, double degrees)
 	const float wo[3] = {(float)sin(theta), 0, (float)cos(theta)};
 	for (int n = 0; n < STEPS; n++)
 		for (int turn = 0; turn < TURNS; turn++) {
-			const double v = (n + 0.5) / STEPS, alpha = M_PI * v * v, beta = 2 * M_PI * (turn + 0.5) / TURNS, x = sin(alpha) * cos(beta);
+			const double v = (n + 0.5) / STEPS, alpha = M_PI * v * v, beta = 2 * M_PI * (turn + 0.5) / TURNS,
+						 x = sin(alpha) * cos(beta);
 			const float wi[3] = {(float)(cos(alpha) * sin(theta) + x * cos(theta)), (float)(sin(alpha) * sin(beta)),
 			                     (float)(cos(alpha) * cos(theta) - x * sin(theta))};
 			float rgb[3];
@@ -255,7 +260,8 @@ static void unusable_directions_give_no_sample_and_no_density(void **user)
 {
 	(void)user;
 	const float good[3] = {0.6f, 0, 0.8f}, u[3] = {0.5f, 0.5f, 0.5f};
-	const float bad[][3] = {{0, 0, 0}, {0.6f, 0, -0.8f}, {1, 0, 0}, {NAN, 0, 1}, {0, 0, NAN}, {INFINITY, 0, 1}, {0, 0, INFINITY}, {1e30f, 0, 1e30f}};
+	const float bad[][3] = {{0, 0, 0},   {0.6f, 0, -0.8f}, {1, 0, 0},        {NAN, 0, 1},
+	                        {0, 0, NAN}, {INFINITY, 0, 1}, {0, 0, INFINITY}, {1e30f, 0, 1e30f}};
 	struct material m = make(SATIN, SMALL);
 	for (size_t n = 0; n < sizeof bad / sizeof *bad; n++) {
 		float wi[3] = {7, 7, 7};

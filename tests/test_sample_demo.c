@@ -33,7 +33,8 @@ static void every_demo_material_is_drawn_as_its_density_says(void **user)
 		struct material m = make_demo(index);
 		for (int n = 0; n < TESTED_COUNT; n++) {
 			float wo[3];
-			double mean, deviation, unused, cosine, total = integrate_all(m.sampler, TESTED[n]), albedo = quadrature(&m, TESTED[n]);
+			double mean, deviation, unused, cosine, total = integrate_all(m.sampler, TESTED[n]),
+													albedo = quadrature(&m, TESTED[n]);
 			if (fabs(total - 1) >= 1e-3)
 				fail_msg("%s at %g degrees: the density integrates to %.6f", demo_name(index), TESTED[n], total);
 			double p = chi_square_probability(m.sampler, m.sampler, TESTED[n]);

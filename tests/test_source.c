@@ -38,10 +38,7 @@ static void put(const char *name, const void *bytes, size_t count)
 	fclose(file);
 }
 
-static void put_text(const char *name, const char *text)
-{
-	put(name, text, strlen(text));
-}
+static void put_text(const char *name, const char *text) { put(name, text, strlen(text)); }
 
 /* Everything that was noticed, one line each: kind, path below the folder, reason. */
 static char noticed[4096];
@@ -124,10 +121,7 @@ static void pack_add(struct pack *pack, const char *path, const void *bytes, siz
 	archive_entry_free(entry);
 }
 
-static void pack_text(struct pack *pack, const char *path, const char *text)
-{
-	pack_add(pack, path, text, strlen(text));
-}
+static void pack_text(struct pack *pack, const char *path, const char *text) { pack_add(pack, path, text, strlen(text)); }
 
 static void pack_close(struct pack *pack)
 {
@@ -165,8 +159,14 @@ static void the_stem_is_the_name(void **state)
 {
 	(void)state;
 	static const char *const cases[][2] = {
-		{"a/b/nickel.binary", "nickel"}, {"nickel", "nickel"}, {"a.b/nickel", "nickel"}, {"nickel.v2.binary", "nickel.v2"},
-		{"nickel.binary.gz", "nickel"}, {"../../etc/passwd", "passwd"}, {"x.dat", "x"}, {".binary", ".binary"},
+		{"a/b/nickel.binary", "nickel"},
+		{"nickel", "nickel"},
+		{"a.b/nickel", "nickel"},
+		{"nickel.v2.binary", "nickel.v2"},
+		{"nickel.binary.gz", "nickel"},
+		{"../../etc/passwd", "passwd"},
+		{"x.dat", "x"},
+		{".binary", ".binary"},
 	};
 	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
 		char stem[SOURCE_STEM_BYTES];
@@ -254,7 +254,8 @@ static void of_two_materials_of_one_name_the_first_path_s_is_taken_and_both_are_
 	put_text("c/one/nickel.binary", "");
 	put_text("c/two/nickel.binary", "");
 	put_text("c/two/zinc.binary", "");
-	const char *const turns[2][3] = {{in("c/one"), in("c/two"), in("c/one/nickel.binary")}, {in("c/two"), in("c/two"), in("c/one")}};
+	const char *const turns[2][3] = {{in("c/one"), in("c/two"), in("c/one/nickel.binary")},
+	                                 {in("c/two"), in("c/two"), in("c/one")}};
 	for (int turn = 0; turn < 2; turn++) {
 		struct source_list list;
 		noticed[0] = '\0';
@@ -292,7 +293,8 @@ static void illegal_names_are_refused_and_shown_escaped_and_the_others_are_taken
 	pack_close(&pack);
 	list = scan("d/a.tar");
 	assert_string_equal(names_of(&list), "delrin ");
-	expect_words(noticed, "damaged d/a.tar: gr\\xfcn.binary: its stem cannot name a material: it is not UTF-8; tell the names' character set with --charset");
+	expect_words(noticed, "damaged d/a.tar: gr\\xfcn.binary: its stem cannot name a material: it is not UTF-8; tell the names' "
+	                      "character set with --charset");
 	source_list_free(&list);
 	const struct source_options latin = {.charset = "ISO-8859-1"};
 	const char *inputs[] = {in("d/a.tar")};
@@ -328,7 +330,8 @@ static void what_is_not_wanted_is_counted_and_may_have_any_name(void **state)
 static void members_of_zip_and_plain_tar_are_items_that_can_be_read_in_any_order(void **state)
 {
 	(void)state;
-	const int formats[] = {ARCHIVE_FORMAT_ZIP, ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FORMAT_TAR_PAX_INTERCHANGE, ARCHIVE_FORMAT_TAR_GNUTAR};
+	const int formats[] = {ARCHIVE_FORMAT_ZIP, ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FORMAT_TAR_PAX_INTERCHANGE,
+	                       ARCHIVE_FORMAT_TAR_GNUTAR};
 	mkdir(in("g"), 0700);
 	for (size_t f = 0; f < sizeof formats / sizeof *formats; f++) {
 		const char *name = formats[f] == ARCHIVE_FORMAT_ZIP ? "g/a.zip" : "g/a.tar";
@@ -364,9 +367,12 @@ static void members_of_zip_and_plain_tar_are_items_that_can_be_read_in_any_order
 static void a_compressed_tar_is_a_stream_of_the_same_materials(void **state)
 {
 	(void)state;
-	static const struct { const char *name; int filter; } cases[] = {
-		{"h/a.tar.gz", ARCHIVE_FILTER_GZIP}, {"h/a.tgz", ARCHIVE_FILTER_GZIP}, {"h/a.tar.bz2", ARCHIVE_FILTER_BZIP2},
-		{"h/a.tar.xz", ARCHIVE_FILTER_XZ}, {"h/a.tar.zst", ARCHIVE_FILTER_ZSTD},
+	static const struct {
+		const char *name;
+		int filter;
+	} cases[] = {
+		{"h/a.tar.gz", ARCHIVE_FILTER_GZIP}, {"h/a.tgz", ARCHIVE_FILTER_GZIP},     {"h/a.tar.bz2", ARCHIVE_FILTER_BZIP2},
+		{"h/a.tar.xz", ARCHIVE_FILTER_XZ},   {"h/a.tar.zst", ARCHIVE_FILTER_ZSTD},
 	};
 	mkdir(in("h"), 0700);
 	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
@@ -376,7 +382,8 @@ static void a_compressed_tar_is_a_stream_of_the_same_materials(void **state)
 		assert_int_equal(list.stream_count, 1);
 		struct container *stream;
 		assert_int_equal(container_open(list.streams[0], CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
-		static const char *const expected[][2] = {{"nickel", "table of nickel"}, {"alum-bronze", "table of bronze"}, {"delrin", "table of delrin"}};
+		static const char *const expected[][2] = {
+			{"nickel", "table of nickel"}, {"alum-bronze", "table of bronze"}, {"delrin", "table of delrin"}};
 		struct source_item item;
 		bool more;
 		for (int m = 0; m < 3; m++) {
@@ -478,7 +485,11 @@ static void names_in_utf8_survive_in_the_c_locale(void **state)
 {
 	(void)state;
 	mkdir(in("k"), 0700);
-	const struct { const char *name; int format; const char *options; } cases[] = {
+	const struct {
+		const char *name;
+		int format;
+		const char *options;
+	} cases[] = {
 		{"k/a.zip", ARCHIVE_FORMAT_ZIP, NULL},
 		{"k/a.tar", ARCHIVE_FORMAT_TAR_USTAR, NULL},
 		{"k/a.tar", ARCHIVE_FORMAT_TAR_PAX_INTERCHANGE, "hdrcharset=BINARY"},
@@ -553,9 +564,14 @@ static void a_damaged_container_is_told_with_its_member_and_the_others_are_read(
 static void a_container_cut_off_anywhere_ends_with_an_error_or_fewer_members(void **state)
 {
 	(void)state;
-	static const struct { const char *name; int format, filter; } cases[] = {
-		{"m/a.zip", ARCHIVE_FORMAT_ZIP, ARCHIVE_FILTER_NONE}, {"m/a.tar", ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FILTER_NONE},
-		{"m/a.tgz", ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FILTER_GZIP}, {"m/a.txz", ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FILTER_XZ},
+	static const struct {
+		const char *name;
+		int format, filter;
+	} cases[] = {
+		{"m/a.zip", ARCHIVE_FORMAT_ZIP, ARCHIVE_FILTER_NONE},
+		{"m/a.tar", ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FILTER_NONE},
+		{"m/a.tgz", ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FILTER_GZIP},
+		{"m/a.txz", ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FILTER_XZ},
 	};
 	char *bytes = malloc(1 << 16), message[512];
 	mkdir(in("m"), 0700);
@@ -564,7 +580,7 @@ static void a_container_cut_off_anywhere_ends_with_an_error_or_fewer_members(voi
 		FILE *file = fopen(in(cases[n].name), "rb");
 		const size_t count = fread(bytes, 1, 1 << 16, file);
 		fclose(file);
-		for (size_t cut = 0; cut < count; cut += count > 2000 ? 97 : 13) {
+		for (size_t cut = 0; cut<count; cut += count> 2000 ? 97 : 13) {
 			put(cases[n].name, bytes, cut);
 			struct source_list list = scan("m");
 			assert_true(list.item_count <= 3);

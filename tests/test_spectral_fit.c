@@ -67,7 +67,8 @@ static void a_table_multiplied_decodes_to_its_values_multiplied(void **unused)
 			for (size_t n = 0; n < lattice_cells(DIMS); n++) {
 				const double wanted = scales[s] * (once.unit * (double)once.rgb[c][n]);
 				if (!(fabs(other.unit * (double)other.rgb[c][n] - wanted) <= 1e-12 * wanted))
-					fail_msg("times %g: channel %d, cell %zu: %g, not %g", scales[s], c, n, other.unit * (double)other.rgb[c][n], wanted);
+					fail_msg("times %g: channel %d, cell %zu: %g, not %g", scales[s], c, n, other.unit * (double)other.rgb[c][n],
+					         wanted);
 			}
 		lattice_free(&multiplied);
 		expansion_free(&other);

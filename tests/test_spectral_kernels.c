@@ -92,11 +92,14 @@ static void a_filled_cell_becomes_the_mean_of_its_neighbours(void **unused)
 			random_floats(beside[n], N);
 		for (int n = 0; n < 2; n++) {
 			memcpy(x[n], old, sizeof old);
-			table(n)->spectral_smooth(x[n], filled, (const float *const[]){beside[0], beside[1], beside[2], beside[3]}, length, 0.25f, -0.5f);
+			table(n)->spectral_smooth(x[n], filled, (const float *const[]){beside[0], beside[1], beside[2], beside[3]}, length,
+			                          0.25f, -0.5f);
 		}
 		for (size_t i = 0; i < N; i++) {
 			const double before = i ? (double)old[i - 1] : 0.25, after = i + 1 < length ? (double)old[i + 1] : -0.5;
-			const double mean = (4 * (before + after) + (double)beside[0][i] + (double)beside[1][i] + (double)beside[2][i] + (double)beside[3][i]) / 12;
+			const double mean = (4 * (before + after) + (double)beside[0][i] + (double)beside[1][i] + (double)beside[2][i] +
+			                     (double)beside[3][i]) /
+			                    12;
 			assert_true(i < length && filled[i] > 0 ? fabs((double)x[0][i] - mean) < 1e-6 : x[0][i] == old[i]);
 		}
 		assert_memory_equal(x[0], x[1], sizeof old);
@@ -118,7 +121,8 @@ static void coefficients_are_drawn_to_0_by_the_noise_around_them(void **unused)
 				square[r][s * STRIDE + q + 1] = r == 1 && s == 1 ? old[q] * old[q] : (float)(0.2 * uniform() * uniform());
 	for (int n = 0; n < 2; n++) {
 		memcpy(x[n], old, sizeof old);
-		table(n)->spectral_shrink(x[n], (const float *const[]){square[0] + 1, square[1] + 1, square[2] + 1}, STRIDE, factor, threshold, N);
+		table(n)->spectral_shrink(x[n], (const float *const[]){square[0] + 1, square[1] + 1, square[2] + 1}, STRIDE, factor,
+		                          threshold, N);
 	}
 	for (int q = 0; q < N; q++) {
 		double energy = q ? 0.5 * pow((double)old[q - 1], 2) : 0;
@@ -144,8 +148,8 @@ static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 	field[0][6] = 1e30f;
 	for (size_t width = 1; width <= STRIDE; width += 5)
 		for (int n = 0; n < 2; n++)
-			table(n)->spectral_values((const float *const[]){field[0], field[1], field[2]}, ROWS, width, STRIDE, base, rotation, most,
-			                         (float *const[]){rgb[n][0], rgb[n][1], rgb[n][2]}, OUT);
+			table(n)->spectral_values((const float *const[]){field[0], field[1], field[2]}, ROWS, width, STRIDE, base, rotation,
+			                          most, (float *const[]){rgb[n][0], rgb[n][1], rgb[n][2]}, OUT);
 	for (int c = 0; c < 3; c++)
 		for (int i = 0; i < ROWS; i++)
 			for (int k = 0; k < OUT; k++) {

@@ -17,8 +17,10 @@ static const struct lattice_dims DIMS = {32, 30, 24};
 /* Smooth in all three angles; another in each channel. */
 static float truth_at(int channel, size_t i)
 {
-	const double k = (double)(i % DIMS.phi_d), j = (double)(i / DIMS.phi_d % DIMS.theta_d), h = (double)(i / DIMS.phi_d / DIMS.theta_d);
-	return (float)(2 * cos(0.11 * h + 0.2 * channel) * cos(0.07 * j) + 0.5 * cos(3.14159265 * 2 * (k + 0.5) / DIMS.phi_d) * sin(0.1 * j + 0.05 * h));
+	const double k = (double)(i % DIMS.phi_d), j = (double)(i / DIMS.phi_d % DIMS.theta_d),
+				 h = (double)(i / DIMS.phi_d / DIMS.theta_d);
+	return (float)(2 * cos(0.11 * h + 0.2 * channel) * cos(0.07 * j) +
+	               0.5 * cos(3.14159265 * 2 * (k + 0.5) / DIMS.phi_d) * sin(0.1 * j + 0.05 * h));
 }
 
 static int by_size(const void *a, const void *b)

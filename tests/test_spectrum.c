@@ -24,7 +24,8 @@ static float *table_random(struct lattice_dims d)
 /* One level of the 9/7 analysis of a line by its filters (Daubechies and Sweldens 1998, table 2), not by lifting; mirrored ends. */
 static void analysis(double *x, uint32_t n)
 {
-	static const double low[5] = {0.852698679008894, 0.377402855612831, -0.110624404418437, -0.023849465019557, 0.037828455507264};
+	static const double low[5] = {0.852698679008894, 0.377402855612831, -0.110624404418437, -0.023849465019557,
+	                              0.037828455507264};
 	static const double high[4] = {0.788485616405583, -0.418092273221617, -0.040689417609164, 0.064538882628697};
 	double y[1024];
 	for (uint32_t i = 0; i < n; i++) {

@@ -55,7 +55,8 @@ static float *inverse_of(struct lattice_dims d, const float *spectrum)
 /* FORMAT.md, "Inverse wavelets", one step of one line. */
 static void synthesis(long double *x, uint32_t n)
 {
-	static const long double factor[4] = {-0.443506852043971L, -0.882911075530934L, 0.052980118572961L, 1.586134342059924L}, k = 1.149604398860241L;
+	static const long double factor[4] = {-0.443506852043971L, -0.882911075530934L, 0.052980118572961L, 1.586134342059924L},
+							 k = 1.149604398860241L;
 	long double z[1024];
 	for (uint32_t i = 0; i < n; i++)
 		z[i] = i % 2 ? x[(n + 1) / 2 + i / 2] * k : x[i / 2] / k;
@@ -94,7 +95,8 @@ static long double *slow_inverse(struct lattice_dims d, const float *spectrum)
 	for (size_t r = 0; r < (size_t)d.theta_h * d.theta_d; r++)
 		for (uint32_t k = 0; k < p; k++)
 			for (uint32_t m = 0; m < p; m++)
-				table[r * p + k] += sqrtl((m ? 2.0L : 1.0L) / p) * wavelets[r * p + spectrum_lane(p, m)] * cosl(acosl(-1) * m * (2 * k + 1) / (2 * p));
+				table[r * p + k] += sqrtl((m ? 2.0L : 1.0L) / p) * wavelets[r * p + spectrum_lane(p, m)] *
+				                    cosl(acosl(-1) * m * (2 * k + 1) / (2 * p));
 	free(wavelets);
 	return table;
 }
@@ -163,7 +165,8 @@ static void any_cells_may_be_asked_of_a_harmonic(void **unused)
 					float got[20];
 					spectrum_inverse_cosines(inverse, m, first, every, 20, got);
 					for (uint32_t i = 0; i < 20; i++)
-						assert_true(fabs((double)got[i] - sqrt((m ? 2.0 : 1.0) / p) * cos(M_PI * m * (first + every * i + 0.5) / p)) < 1e-7);
+						assert_true(fabs((double)got[i] -
+						                 sqrt((m ? 2.0 : 1.0) / p) * cos(M_PI * m * (first + every * i + 0.5) / p)) < 1e-7);
 				}
 		spectrum_inverse_free(inverse);
 	}

@@ -48,11 +48,11 @@ static void another_unicode_form_is_nearest_whatever_the_length(void **state)
 	(void)state;
 	const char *const names[] = {"bla", "bl\xC3\xA9", "\xE3\x82\xAC", "\xEA\xB0\x81", NULL};
 	assert_string_equal(guess("ble\xCC\x81", names), "bl\xC3\xA9");
-	assert_string_equal(guess("\xE3\x82\xAB\xE3\x82\x99", names), "\xE3\x82\xAC");                  /* a kana and its mark */
+	assert_string_equal(guess("\xE3\x82\xAB\xE3\x82\x99", names), "\xE3\x82\xAC");             /* a kana and its mark */
 	assert_string_equal(guess("\xE1\x84\x80\xE1\x85\xA1\xE1\x86\xA8", names), "\xEA\xB0\x81"); /* three jamo, one syllable */
-	assert_true(normal_form_equal("e\xCC\xA3\xCC\x82", "\xE1\xBB\x87")); /* two marks */
-	assert_true(normal_form_equal("\xE1\xBA\xB9\xCC\x82", "\xE1\xBB\x87")); /* one of them composed */
-	assert_false(normal_form_equal("bl\xC3\xA9", "bl\xC3\xA9")); /* the same */
+	assert_true(normal_form_equal("e\xCC\xA3\xCC\x82", "\xE1\xBB\x87"));                       /* two marks */
+	assert_true(normal_form_equal("\xE1\xBA\xB9\xCC\x82", "\xE1\xBB\x87"));                    /* one of them composed */
+	assert_false(normal_form_equal("bl\xC3\xA9", "bl\xC3\xA9"));                               /* the same */
 	assert_false(normal_form_equal("bl\xC3\xA9", "bl\xC3\xA8"));
 	assert_false(normal_form_equal("ble", "bl\xC3\xA9"));
 	assert_false(normal_form_equal("bl\xE9", "bl\xC3\xA9")); /* no UTF-8 */

@@ -34,7 +34,8 @@ static double textbook_look_up(const struct lattice *lattice, const double at[3]
 	double p = fmod(at[2] - 0.5 + d.phi_d, d.phi_d);
 	for (uint32_t neighbour = 0; neighbour < 8; neighbour++) {
 		uint32_t i = (uint32_t)h, j = (uint32_t)t, k = (uint32_t)p;
-		double w = (neighbour & 1 ? h - i : 1 - (h - i)) * (neighbour & 2 ? t - j : 1 - (t - j)) * (neighbour & 4 ? p - k : 1 - (p - k));
+		double w =
+			(neighbour & 1 ? h - i : 1 - (h - i)) * (neighbour & 2 ? t - j : 1 - (t - j)) * (neighbour & 4 ? p - k : 1 - (p - k));
 		i += neighbour & 1;
 		j += (neighbour & 2) >> 1;
 		k = (k + (neighbour >> 2)) % d.phi_d;
@@ -155,8 +156,8 @@ static void places_agree_with_inverse_trigonometric_functions(void **state)
 		if (cos_h > 1 - 1e-9 || cos_d > 1 - 1e-9 || i[2] <= 0)
 			continue; /* acos itself loses half its digits at 1 */
 		textbook_coordinates(LATTICE_MERL, i, o, at);
-		struct place place = place_make(angles, LATTICE_MERL, cos_h, cos_d, (i[1] * h[0] - i[0] * h[1]) / s,
-		                                cos_d * cos_h - i[2], 1);
+		struct place place =
+			place_make(angles, LATTICE_MERL, cos_h, cos_d, (i[1] * h[0] - i[0] * h[1]) / s, cos_d * cos_h - i[2], 1);
 		double cell_i = place.cell / 181 % 91 + place.theta_h / 65535.0, cell_j = place.cell / 181 / 91 + place.theta_d / 65535.0;
 		double cell_k = place.cell % 181 + place.phi_d / 65535.0, around = fabs(cell_k + 0.5 - at[2]);
 		/* counted from the first centre; beyond the last one there is a copy, which place_make may lean on */

@@ -245,9 +245,9 @@ static void a_batch_gives_the_same_bits_as_single_calls_at_any_count(void **user
 			for (size_t count = 0; count <= COUNT; count += count < 70 ? 1 : 13) {
 				for (size_t m = 0; m < 3 * COUNT; m++)
 					out[m / COUNT][m % COUNT] = -1;
-				kernels_of(form, channels, avx2)->batch(table, count, (const float *const[]){in[0], in[1], in[2]},
-				                                        (const float *const[]){in[3], in[4], in[5]},
-				                                        (float *const[]){out[0], out[1], out[2]});
+				kernels_of(form, channels, avx2)
+					->batch(table, count, (const float *const[]){in[0], in[1], in[2]},
+				            (const float *const[]){in[3], in[4], in[5]}, (float *const[]){out[0], out[1], out[2]});
 				for (size_t m = 0; m < COUNT; m++) {
 					float want[3];
 					const float wi[3] = {in[0][m], in[1][m], in[2][m]}, wo[3] = {in[3][m], in[4][m], in[5][m]};
@@ -292,7 +292,8 @@ static void unusable_directions_give_0(void **user)
 {
 	(void)user;
 	const float good[3] = {0.6f, 0, 0.8f};
-	const float bad[][3] = {{0, 0, 0}, {0.6f, 0, -0.8f}, {1, 0, 0}, {NAN, 0, 1}, {0, 0, NAN}, {INFINITY, 0, 1}, {0, 0, INFINITY}, {1e30f, 0, 1e30f}};
+	const float bad[][3] = {{0, 0, 0},   {0.6f, 0, -0.8f}, {1, 0, 0},        {NAN, 0, 1},
+	                        {0, 0, NAN}, {INFINITY, 0, 1}, {0, 0, INFINITY}, {1e30f, 0, 1e30f}};
 	struct expansion e = smooth_material((struct lattice_dims){8, 8, 8}, 1);
 	for (int form = 0; form < 2; form++) {
 		struct table *table = build(&e, (enum table_form)form, 3);
@@ -324,8 +325,10 @@ static void extreme_tables_stay_finite_and_zeros_stay_0(void **user)
 					e.unit = units[u];
 					for (size_t n = 0; n < cells; n++)
 						for (int c = 0; c < 3; c++)
-							e.rgb[c][n] = kind == 0 ? 0 : kind == 1 ? (n == 100 ? 1e30f : 0) : kind == 2 ? (c == 1 ? 0 : 1) :
-							                                                              (float)pow(10, 70 * uniform() - 35);
+							e.rgb[c][n] = kind == 0   ? 0
+							              : kind == 1 ? (n == 100 ? 1e30f : 0)
+							              : kind == 2 ? (c == 1 ? 0 : 1)
+							                          : (float)pow(10, 70 * uniform() - 35);
 					struct table *table = build(&e, (enum table_form)form, channels);
 					for (int n = 0; n < 2000; n++) {
 						float wi[3], wo[3], rgb[3];
@@ -391,9 +394,11 @@ static void the_layout_of_a_compact_table_is_enough_to_look_a_value_up(void **us
 				} base = {(head & 0xffff) << 14}, step = {head >> 16 << 14};
 				const double root = (double)base.value + (double)step.value * block[4 + in], mean = root * root * root * root;
 				const double to = (double)(in - later * layout.half) / layout.half;
-				const double red = mean * ((1 - to) * (code[0] & 4095) + to * (code[1] & 4095)), blue = mean * ((1 - to) * (code[0] >> 12) + to * (code[1] >> 12));
+				const double red = mean * ((1 - to) * (code[0] & 4095) + to * (code[1] & 4095)),
+							 blue = mean * ((1 - to) * (code[0] >> 12) + to * (code[1] >> 12));
 				for (int c = 0; c < 3; c++) {
-					const double found = red * (double)layout.mix[0][c] + blue * (double)layout.mix[1][c] + mean * (double)layout.mix[2][c];
+					const double found =
+						red * (double)layout.mix[0][c] + blue * (double)layout.mix[1][c] + mean * (double)layout.mix[2][c];
 					const double expected = (double)e.rgb[c][lattice_index(dims, i, j, k)];
 					assert_true(fabs(found - expected) < 0.03 * expected + 1e-4);
 				}

@@ -13,21 +13,18 @@
 static void make_marginals(const char *path) { vector_one(path, SHAPE_MARGINALS); }
 static void make_pairs(const char *path) { vector_one(path, SHAPE_PAIRS); }
 static void make_slices(const char *path) { vector_one(path, SHAPE_FULL); }
-static void make_no_hd(const char *path) { vector_one(path, (struct vector_shape){ { 4, 4, 4 }, 0, 5, 6, 1 }); }
-static void make_odd(const char *path) { vector_one(path, (struct vector_shape){ { 7, 5, 11 }, 9, 9, 8, 0.75 }); }
-static void make_larger(const char *path) { vector_one(path, (struct vector_shape){ { 9, 16, 8 }, 20, 18, 14, 3 }); }
-static void make_bright(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 5, 1e300 }); }
-static void make_dark(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 5, 1e-300 }); }
-static void make_zero(const char *path) { vector_one(path, (struct vector_shape){ { 6, 5, 8 }, 8, 9, 5, 0 }); }
+static void make_no_hd(const char *path) { vector_one(path, (struct vector_shape){{4, 4, 4}, 0, 5, 6, 1}); }
+static void make_odd(const char *path) { vector_one(path, (struct vector_shape){{7, 5, 11}, 9, 9, 8, 0.75}); }
+static void make_larger(const char *path) { vector_one(path, (struct vector_shape){{9, 16, 8}, 20, 18, 14, 3}); }
+static void make_bright(const char *path) { vector_one(path, (struct vector_shape){{6, 5, 8}, 8, 9, 5, 1e300}); }
+static void make_dark(const char *path) { vector_one(path, (struct vector_shape){{6, 5, 8}, 8, 9, 5, 1e-300}); }
+static void make_zero(const char *path) { vector_one(path, (struct vector_shape){{6, 5, 8}, 8, 9, 5, 0}); }
 
-static void make_empty(const char *path)
-{
-	vector_archive(path, NULL, NULL, 0);
-}
+static void make_empty(const char *path) { vector_archive(path, NULL, NULL, 0); }
 
 static void make_names(const char *path)
 {
-	static const char *const names[] = { " ", "!", "A", "a", "caf\xC3\xA9", "\xE9\x8A\x80", "\xF0\x9F\x8E\xA8" };
+	static const char *const names[] = {" ", "!", "A", "a", "caf\xC3\xA9", "\xE9\x8A\x80", "\xF0\x9F\x8E\xA8"};
 	char longest[256];
 	uint8_t *records[8];
 	size_t bytes[8];
@@ -78,77 +75,84 @@ static void make_dropped_layer(const char *path)
 }
 
 static const struct vector VECTORS[] = {
-	{ "good-marginals", BP_OK, "One material, 4x4x4, all pairs left out.", make_marginals },
-	{ "good-pairs", BP_OK, "4x5x6 with both unconditional pairs, two layers.", make_pairs },
-	{ "good-slices", BP_OK, "6x5x8 with everything, three layers; the last of five slices is shared, one is empty.", make_slices },
-	{ "good-no-hd", BP_OK, "4x4x4 with c_hd left out.", make_no_hd },
-	{ "good-one-layer", BP_OK, "6x5x8 with everything in one layer: the sections say what is there, not the layers.", make_one_layer },
-	{ "good-odd-extents", BP_OK, "7x5x11: transform planes larger than the fields.", make_odd },
-	{ "good-larger", BP_OK, "9x16x8: one to three wavelet levels.", make_larger },
-	{ "good-bright", BP_OK, "Values around 1e300.", make_bright },
-	{ "good-dark", BP_OK, "Values around 1e-300.", make_dark },
-	{ "good-zero", BP_OK, "Every value is 0.", make_zero },
-	{ "good-limits", BP_OK, "Legal but hostile: parameters at the end of their range; values are 0 or meet their limit.", make_limits },
-	{ "good-empty", BP_OK, "No material and no index page.", make_empty },
-	{ "good-names", BP_OK, "Eight names: a blank, two-, three- and four-byte characters, and 255 bytes.", make_names },
-	{ "good-two-levels", BP_OK, "An index of two leaves and a root.", make_two_levels },
-	{ "good-optional-section", BP_OK, "A section of an unknown type with unknown flags, not required: skipped.", make_optional_section },
-	{ "good-dropped-layer", BP_OK, "A record whose last layer was dropped: two layers, bit 2 of left out is clear.", make_dropped_layer },
-	{ "good-minor", BP_OK, "Minor version 1, ignorable flags, and reserved bytes in use.", make_minor },
-	{ "good-spectral", BP_OK, "The spectral profile, 16x15x6, cut off in its lowest plane by a budget of 1500 bytes.", make_spectral },
-	{ "good-spectral-layers", BP_OK, "The spectral profile, 17x15x7, two layers.", make_spectral_layers },
-	{ "good-spectral-weights", BP_OK, "The spectral profile, 21x20x4: coded more coarsely where errors are worth less.", make_spectral_weights },
-	{ "good-spectral-least", BP_OK, "The spectral profile, 4x4x4, complete.", make_spectral_least },
-	{ "good-spectral-bright", BP_OK, "The spectral profile, values around 1e300.", make_spectral_bright },
-	{ "good-spectral-dark", BP_OK, "The spectral profile, values around 1e-300.", make_spectral_dark },
-	{ "good-spectral-zero", BP_OK, "The spectral profile, every value 0: no plane at all.", make_spectral_zero },
-	{ "unsupported-major", BP_ERROR_UNSUPPORTED, "Major version 2.", make_major },
-	{ "unsupported-flags", BP_ERROR_UNSUPPORTED, "A required flag in the archive's header.", make_flags },
-	{ "unsupported-record-version", BP_ERROR_UNSUPPORTED, "A record of version 1.", make_record_version },
-	{ "unsupported-profile", BP_ERROR_UNSUPPORTED, "Profile 77.", make_profile },
-	{ "unsupported-section", BP_ERROR_UNSUPPORTED, "A required section of an unknown type.", make_required_section },
-	{ "unsupported-retired", BP_ERROR_UNSUPPORTED, "A record of the paper's profile as codec versions up to 3 wrote it: to be packed again.", make_retired },
-	{ "unsupported-codec", BP_ERROR_UNSUPPORTED, "A known type of section with an unknown codec, required.", make_codec },
-	{ "bad-empty-file", BP_ERROR_NOT_OURS, "No byte at all.", make_empty_file },
-	{ "bad-text-mode", BP_ERROR_NOT_OURS, "CR LF became LF on the way, everywhere.", make_text_mode },
-	{ "bad-short-header", BP_ERROR_CORRUPT, "The magic, and an end within the header.", make_short_header },
-	{ "bad-truncated", BP_ERROR_CORRUPT, "The last byte is missing.", make_truncated },
-	{ "bad-trailing", BP_ERROR_CORRUPT, "A byte behind the end.", make_trailing },
-	{ "bad-header-checksum", BP_ERROR_CHECKSUM, "A bit of the header differs.", make_header_checksum },
-	{ "bad-page-checksum", BP_ERROR_CHECKSUM, "A bit of the index differs.", make_page_checksum },
-	{ "bad-head-checksum", BP_ERROR_CHECKSUM, "A bit of a record's head differs.", make_head_checksum },
-	{ "bad-section-checksum", BP_ERROR_CHECKSUM, "A bit of a section differs.", make_section_checksum },
-	{ "bad-count", BP_ERROR_CORRUPT, "The header counts four materials, the index has three.", make_count },
-	{ "bad-count-pages", BP_ERROR_CORRUPT, "The header counts 10^8 materials in one page.", make_count_pages },
-	{ "bad-depth", BP_ERROR_CORRUPT, "The header says two levels, there is one page.", make_depth },
-	{ "bad-index-offset", BP_ERROR_CORRUPT, "An index offset near 2^64.", make_index_offset },
-	{ "bad-page-padding", BP_ERROR_CORRUPT, "A byte of an index page's padding is not zero.", make_page_padding },
-	{ "bad-page-order", BP_ERROR_CORRUPT, "Two names in the index have changed places.", make_page_order },
-	{ "bad-duplicate", BP_ERROR_CORRUPT, "The same name twice.", make_duplicate },
-	{ "bad-cycle", BP_ERROR_CORRUPT, "The root names itself as its child.", make_cycle },
-	{ "bad-leaf-twice", BP_ERROR_CORRUPT, "Both entries of the root lead to the first leaf.", make_leaf_twice },
-	{ "bad-record-offset", BP_ERROR_CORRUPT, "The index places a record behind the file.", make_record_offset },
-	{ "bad-record-swapped", BP_ERROR_CORRUPT, "Two entries lead to each other's records.", make_record_swapped },
-	{ "bad-gap", BP_ERROR_CORRUPT, "A byte that belongs to nothing between two records.", make_gap },
-	{ "bad-head-bytes", BP_ERROR_CORRUPT, "A head that claims 4 GB.", make_head_bytes },
-	{ "bad-name", BP_ERROR_CORRUPT, "A name with a slash, in the index and in the record.", make_name },
-	{ "bad-extents", BP_ERROR_CORRUPT, "A lattice of 1024x1024x1024 cells.", make_extents },
-	{ "bad-section-order", BP_ERROR_CORRUPT, "The sections' layers descend.", make_section_order },
-	{ "bad-section-bytes", BP_ERROR_CORRUPT, "A section that claims 4 GB.", make_section_bytes },
-	{ "bad-nan", BP_ERROR_CORRUPT, "A scale that is not a number, under a checksum that holds.", make_nan },
-	{ "bad-overflow", BP_ERROR_CORRUPT, "Scale and specular parameter whose product overflows.", make_overflow },
-	{ "bad-marginal-bytes", BP_ERROR_CORRUPT, "A section of marginals with a byte too many.", make_marginal_bytes },
-	{ "bad-coefficients", BP_ERROR_CORRUPT, "A pair that claims more coefficients than its bytes can hold.", make_coefficients },
-	{ "bad-stream-short", BP_ERROR_CORRUPT, "A range coder stream without its last byte.", make_stream_short },
-	{ "bad-stream-long", BP_ERROR_CORRUPT, "A range coder stream with a byte too many.", make_stream_long },
-	{ "bad-step", BP_ERROR_CORRUPT, "A step beyond the largest.", make_step },
-	{ "bad-section-missing", BP_ERROR_CORRUPT, "No marginals.", make_section_missing },
-	{ "bad-section-twice", BP_ERROR_CORRUPT, "The marginals twice.", make_section_twice },
-	{ "bad-spectral-planes", BP_ERROR_CORRUPT, "25 bit planes.", make_spectral_planes },
-	{ "bad-spectral-unit", BP_ERROR_CORRUPT, "A unit above 2^999.", make_spectral_unit },
-	{ "bad-spectral-unit-least", BP_ERROR_CORRUPT, "A unit below 2^-1022.", make_spectral_unit_least },
-	{ "bad-spectral-end", BP_ERROR_CORRUPT, "More units than there are planes, fields and harmonics.", make_spectral_end },
-	{ "bad-spectral-early", BP_ERROR_CORRUPT, "A stream of planes that is longer than its units.", make_spectral_early },
+	{"good-marginals", BP_OK, "One material, 4x4x4, all pairs left out.", make_marginals},
+	{"good-pairs", BP_OK, "4x5x6 with both unconditional pairs, two layers.", make_pairs},
+	{"good-slices", BP_OK, "6x5x8 with everything, three layers; the last of five slices is shared, one is empty.", make_slices},
+	{"good-no-hd", BP_OK, "4x4x4 with c_hd left out.", make_no_hd},
+	{"good-one-layer", BP_OK, "6x5x8 with everything in one layer: the sections say what is there, not the layers.",
+     make_one_layer},
+	{"good-odd-extents", BP_OK, "7x5x11: transform planes larger than the fields.", make_odd},
+	{"good-larger", BP_OK, "9x16x8: one to three wavelet levels.", make_larger},
+	{"good-bright", BP_OK, "Values around 1e300.", make_bright},
+	{"good-dark", BP_OK, "Values around 1e-300.", make_dark},
+	{"good-zero", BP_OK, "Every value is 0.", make_zero},
+	{"good-limits", BP_OK, "Legal but hostile: parameters at the end of their range; values are 0 or meet their limit.",
+     make_limits},
+	{"good-empty", BP_OK, "No material and no index page.", make_empty},
+	{"good-names", BP_OK, "Eight names: a blank, two-, three- and four-byte characters, and 255 bytes.", make_names},
+	{"good-two-levels", BP_OK, "An index of two leaves and a root.", make_two_levels},
+	{"good-optional-section", BP_OK, "A section of an unknown type with unknown flags, not required: skipped.",
+     make_optional_section},
+	{"good-dropped-layer", BP_OK, "A record whose last layer was dropped: two layers, bit 2 of left out is clear.",
+     make_dropped_layer},
+	{"good-minor", BP_OK, "Minor version 1, ignorable flags, and reserved bytes in use.", make_minor},
+	{"good-spectral", BP_OK, "The spectral profile, 16x15x6, cut off in its lowest plane by a budget of 1500 bytes.",
+     make_spectral},
+	{"good-spectral-layers", BP_OK, "The spectral profile, 17x15x7, two layers.", make_spectral_layers},
+	{"good-spectral-weights", BP_OK, "The spectral profile, 21x20x4: coded more coarsely where errors are worth less.",
+     make_spectral_weights},
+	{"good-spectral-least", BP_OK, "The spectral profile, 4x4x4, complete.", make_spectral_least},
+	{"good-spectral-bright", BP_OK, "The spectral profile, values around 1e300.", make_spectral_bright},
+	{"good-spectral-dark", BP_OK, "The spectral profile, values around 1e-300.", make_spectral_dark},
+	{"good-spectral-zero", BP_OK, "The spectral profile, every value 0: no plane at all.", make_spectral_zero},
+	{"unsupported-major", BP_ERROR_UNSUPPORTED, "Major version 2.", make_major},
+	{"unsupported-flags", BP_ERROR_UNSUPPORTED, "A required flag in the archive's header.", make_flags},
+	{"unsupported-record-version", BP_ERROR_UNSUPPORTED, "A record of version 1.", make_record_version},
+	{"unsupported-profile", BP_ERROR_UNSUPPORTED, "Profile 77.", make_profile},
+	{"unsupported-section", BP_ERROR_UNSUPPORTED, "A required section of an unknown type.", make_required_section},
+	{"unsupported-retired", BP_ERROR_UNSUPPORTED,
+     "A record of the paper's profile as codec versions up to 3 wrote it: to be packed again.", make_retired},
+	{"unsupported-codec", BP_ERROR_UNSUPPORTED, "A known type of section with an unknown codec, required.", make_codec},
+	{"bad-empty-file", BP_ERROR_NOT_OURS, "No byte at all.", make_empty_file},
+	{"bad-text-mode", BP_ERROR_NOT_OURS, "CR LF became LF on the way, everywhere.", make_text_mode},
+	{"bad-short-header", BP_ERROR_CORRUPT, "The magic, and an end within the header.", make_short_header},
+	{"bad-truncated", BP_ERROR_CORRUPT, "The last byte is missing.", make_truncated},
+	{"bad-trailing", BP_ERROR_CORRUPT, "A byte behind the end.", make_trailing},
+	{"bad-header-checksum", BP_ERROR_CHECKSUM, "A bit of the header differs.", make_header_checksum},
+	{"bad-page-checksum", BP_ERROR_CHECKSUM, "A bit of the index differs.", make_page_checksum},
+	{"bad-head-checksum", BP_ERROR_CHECKSUM, "A bit of a record's head differs.", make_head_checksum},
+	{"bad-section-checksum", BP_ERROR_CHECKSUM, "A bit of a section differs.", make_section_checksum},
+	{"bad-count", BP_ERROR_CORRUPT, "The header counts four materials, the index has three.", make_count},
+	{"bad-count-pages", BP_ERROR_CORRUPT, "The header counts 10^8 materials in one page.", make_count_pages},
+	{"bad-depth", BP_ERROR_CORRUPT, "The header says two levels, there is one page.", make_depth},
+	{"bad-index-offset", BP_ERROR_CORRUPT, "An index offset near 2^64.", make_index_offset},
+	{"bad-page-padding", BP_ERROR_CORRUPT, "A byte of an index page's padding is not zero.", make_page_padding},
+	{"bad-page-order", BP_ERROR_CORRUPT, "Two names in the index have changed places.", make_page_order},
+	{"bad-duplicate", BP_ERROR_CORRUPT, "The same name twice.", make_duplicate},
+	{"bad-cycle", BP_ERROR_CORRUPT, "The root names itself as its child.", make_cycle},
+	{"bad-leaf-twice", BP_ERROR_CORRUPT, "Both entries of the root lead to the first leaf.", make_leaf_twice},
+	{"bad-record-offset", BP_ERROR_CORRUPT, "The index places a record behind the file.", make_record_offset},
+	{"bad-record-swapped", BP_ERROR_CORRUPT, "Two entries lead to each other's records.", make_record_swapped},
+	{"bad-gap", BP_ERROR_CORRUPT, "A byte that belongs to nothing between two records.", make_gap},
+	{"bad-head-bytes", BP_ERROR_CORRUPT, "A head that claims 4 GB.", make_head_bytes},
+	{"bad-name", BP_ERROR_CORRUPT, "A name with a slash, in the index and in the record.", make_name},
+	{"bad-extents", BP_ERROR_CORRUPT, "A lattice of 1024x1024x1024 cells.", make_extents},
+	{"bad-section-order", BP_ERROR_CORRUPT, "The sections' layers descend.", make_section_order},
+	{"bad-section-bytes", BP_ERROR_CORRUPT, "A section that claims 4 GB.", make_section_bytes},
+	{"bad-nan", BP_ERROR_CORRUPT, "A scale that is not a number, under a checksum that holds.", make_nan},
+	{"bad-overflow", BP_ERROR_CORRUPT, "Scale and specular parameter whose product overflows.", make_overflow},
+	{"bad-marginal-bytes", BP_ERROR_CORRUPT, "A section of marginals with a byte too many.", make_marginal_bytes},
+	{"bad-coefficients", BP_ERROR_CORRUPT, "A pair that claims more coefficients than its bytes can hold.", make_coefficients},
+	{"bad-stream-short", BP_ERROR_CORRUPT, "A range coder stream without its last byte.", make_stream_short},
+	{"bad-stream-long", BP_ERROR_CORRUPT, "A range coder stream with a byte too many.", make_stream_long},
+	{"bad-step", BP_ERROR_CORRUPT, "A step beyond the largest.", make_step},
+	{"bad-section-missing", BP_ERROR_CORRUPT, "No marginals.", make_section_missing},
+	{"bad-section-twice", BP_ERROR_CORRUPT, "The marginals twice.", make_section_twice},
+	{"bad-spectral-planes", BP_ERROR_CORRUPT, "25 bit planes.", make_spectral_planes},
+	{"bad-spectral-unit", BP_ERROR_CORRUPT, "A unit above 2^999.", make_spectral_unit},
+	{"bad-spectral-unit-least", BP_ERROR_CORRUPT, "A unit below 2^-1022.", make_spectral_unit_least},
+	{"bad-spectral-end", BP_ERROR_CORRUPT, "More units than there are planes, fields and harmonics.", make_spectral_end},
+	{"bad-spectral-early", BP_ERROR_CORRUPT, "A stream of planes that is longer than its units.", make_spectral_early},
 };
 enum { VECTOR_COUNT = sizeof VECTORS / sizeof *VECTORS };
 
@@ -189,7 +193,7 @@ static void every_archive_is_judged_as_its_name_says(void **state)
 	(void)state;
 	for (int i = 0; i < VECTOR_COUNT; i++) {
 		bp_archive *archive = NULL;
-		bp_error error = { 0 };
+		bp_error error = {0};
 		bp_status status = bp_archive_open(committed(&VECTORS[i], "bpk"), &archive, &error);
 		if (!status)
 			status = bp_archive_verify(archive, BP_VERIFY_DEEP, NULL, NULL, &error);
@@ -220,7 +224,8 @@ static void decoded_values_are_the_committed_ones(void **state)
 			assert_int_equal(fscanf(made, "%299s", made_word), 1);
 			a = strtod(made_word, &made_end);
 			b = strtod(kept_word, &kept_end);
-			if (*made_end || *kept_end ? strcmp(made_word, kept_word) != 0 : fabs(a - b) > 1e-6 * fabs(b) + 1e-12 * (fabs(b) < 1e-200 ? 0 : 1))
+			if (*made_end || *kept_end ? strcmp(made_word, kept_word) != 0
+			                           : fabs(a - b) > 1e-6 * fabs(b) + 1e-12 * (fabs(b) < 1e-200 ? 0 : 1))
 				fail_msg("%s: %s decoded, %s committed", VECTORS[i].name, made_word, kept_word);
 		}
 		assert_int_equal(fscanf(made, "%299s", made_word), EOF);
@@ -242,7 +247,8 @@ static void write_all(const char *folder)
 	      "layers a line `NAME LAYERS H D P`, then one line of H × D × P values for each of R, G and B, in 1/sr. Their error\n"
 	      "figures are invented, since nothing was measured. `tests/test_vectors.c` makes the files\n"
 	      "(`build/tests/test_vectors --write format-spec/vectors`) and compares them.\n\n"
-	      "| file | what a deep verification says | |\n|---|---|---|\n", readme);
+	      "| file | what a deep verification says | |\n|---|---|---|\n",
+	      readme);
 	for (int i = 0; i < VECTOR_COUNT; i++) {
 		snprintf(path, sizeof path, "%s/%s.bpk", folder, VECTORS[i].name);
 		VECTORS[i].make(path);

@@ -84,7 +84,8 @@ static void squares_are_those_of_the_basis(void **user)
 			for (uint32_t r = 0; r < 4; r++)
 				field[r * 11 + n] = 1;
 			wavelet_forward(&p, field, coefficient, scratch);
-			for (uint32_t a = 0; a < m; a++) /* a constant along the rows: in their first coarse coefficient, twice the square's root */
+			for (uint32_t a = 0; a < m;
+			     a++) /* a constant along the rows: in their first coarse coefficient, twice the square's root */
 				assert_true(fabsf(coefficient[a * 4] * coefficient[a * 4] - 2 * square[a * 11 + n]) < 1e-6f);
 		}
 		free(square);
@@ -127,7 +128,8 @@ static void a_mirrored_field_has_no_odd_part(void **user)
 	(void)user;
 	const struct wavelet_plane p = wavelet_plane_for(WAVELET_DAUBECHIES, 6, 13, true);
 	const size_t n = wavelet_field_cells(&p), m = wavelet_cells(&p);
-	float *field = malloc(n * sizeof *field), *coefficient = malloc(m * sizeof *coefficient), *scratch = malloc(3 * m * sizeof *scratch);
+	float *field = malloc(n * sizeof *field), *coefficient = malloc(m * sizeof *coefficient),
+		  *scratch = malloc(3 * m * sizeof *scratch);
 	assert_int_equal(p.parts, 2);
 	assert_int_equal(p.columns.field, 7);
 	for (size_t r = 0; r < 6; r++)
@@ -152,7 +154,8 @@ static void a_constant_has_only_coarse_coefficients(void **user)
 		wavelet_forward(&p, field, coefficient, scratch);
 		for (uint32_t i = 0; i < 32u * 16u; i++) {
 			const bool coarse = (i % 32u) < (32u >> p.rows.levels) && i / 32u < 16u >> p.columns.levels;
-			assert_true(fabsf(coefficient[i] - (coarse ? 3 * sqrtf((float)(1u << (p.rows.levels + p.columns.levels))) : 0)) < 1e-4f);
+			assert_true(fabsf(coefficient[i] - (coarse ? 3 * sqrtf((float)(1u << (p.rows.levels + p.columns.levels))) : 0)) <
+			            1e-4f);
 		}
 	}
 }

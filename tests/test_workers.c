@@ -63,8 +63,7 @@ static bp_status work(void *user, const struct job *job, int fd, uint8_t **recor
 static struct workers *start(unsigned count, unsigned slots)
 {
 	struct workers *workers = NULL;
-	struct workers_options options = {
-		.count = count, .slot_count = slots, .work = work, .result = remember, .wake_fd = -1};
+	struct workers_options options = {.count = count, .slot_count = slots, .work = work, .result = remember, .wake_fd = -1};
 	bp_error error;
 	memset(&seen, 0, sizeof seen);
 	assert_int_equal(workers_start(&options, &workers, &error), BP_OK);

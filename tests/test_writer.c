@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-static const char *const NAMES[] = { "brass", "chrome", "delrin" };
+static const char *const NAMES[] = {"brass", "chrome", "delrin"};
 
 static unsigned files_in_folder(void)
 {
@@ -31,7 +31,10 @@ static void the_same_records_give_the_same_bytes(void **state)
 	b = fixture_file_read(fixture_path("b.bpk"), &b_bytes);
 	assert_int_equal(a_bytes, b_bytes);
 	assert_memory_equal(a, b, a_bytes);
-	assert_memory_equal(a, "\x8b" "BPK\r\n\x1a\n", 8);
+	assert_memory_equal(a,
+	                    "\x8b"
+	                    "BPK\r\n\x1a\n",
+	                    8);
 	assert_int_equal(files_in_folder(), 2);
 	free(a);
 	free(b);
@@ -116,11 +119,11 @@ static void a_full_disk_leaves_the_old_archive_untouched(void **state)
 	before = fixture_file_read(path, &before_bytes);
 	child = fork();
 	if (child == 0) {
-		struct rlimit limit = { 300000, 300000 };
+		struct rlimit limit = {300000, 300000};
 		struct archive_writer *writer = NULL;
 		size_t bytes;
 		uint8_t *record = fixture_record("a", 1, 1000000, &bytes);
-		bp_error error = { 0 };
+		bp_error error = {0};
 		bp_status status;
 		signal(SIGXFSZ, SIG_IGN);
 		setrlimit(RLIMIT_FSIZE, &limit);

@@ -17,7 +17,7 @@ FIXTURE void values_write(const char *archive_path, const char *path)
 		struct record_head head;
 		assert_int_equal(archive_record_head(archive, m, &head, NULL), BP_OK);
 		for (uint32_t layers = 1; layers <= head.layer_count; layers++) {
-			struct expansion table = { 0 };
+			struct expansion table = {0};
 			struct model *model = NULL;
 			assert_int_equal(expansion_alloc(head.dims, &table, NULL), BP_OK);
 			assert_int_equal(archive_model_load(archive, m, layers, &model, NULL), BP_OK);

@@ -27,10 +27,11 @@ FIXTURE uint32_t vector_random(uint32_t n)
 	return (uint32_t)((uint64_t)vector_state * n >> 32);
 }
 
-FIXTURE void vector_field(struct lattice_dims dims, enum paper_field kind, uint32_t count, uint16_t step, struct sparse_field *field)
+FIXTURE void vector_field(struct lattice_dims dims, enum paper_field kind, uint32_t count, uint16_t step,
+                          struct sparse_field *field)
 {
 	uint32_t next = 0, room = paper_plane_cells(dims, kind);
-	*field = (struct sparse_field){ .count = count, .step = count ? step : 0 };
+	*field = (struct sparse_field){.count = count, .step = count ? step : 0};
 	paper_field_extents(dims, kind, &field->rows, &field->columns);
 	if (!count)
 		return;
@@ -57,7 +58,7 @@ FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 {
 	struct model *model = calloc(1, sizeof *model);
 	struct paper_model *paper = calloc(1, sizeof *paper);
-	const uint32_t extents[3] = { shape.dims.theta_h, shape.dims.theta_d, shape.dims.phi_d };
+	const uint32_t extents[3] = {shape.dims.theta_h, shape.dims.theta_d, shape.dims.phi_d};
 	const uint16_t step = PAPER_STEP_ONE - 7 * 256;
 	vector_state = seed;
 	model->profile = PROFILE_PAPER;
@@ -67,7 +68,8 @@ FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 	paper->dims = shape.dims;
 	for (int c = 0; c < 3; c++) {
 		struct paper_channel *channel = &paper->channel[c];
-		model->colour[c] = (struct colour_fit){ shape.scale * (0.125 - 0.0625 * c), 1.25 - 0.25 * c, 9u + (uint32_t)c, c != 1, 0.03125 * c };
+		model->colour[c] =
+			(struct colour_fit){shape.scale * (0.125 - 0.0625 * c), 1.25 - 0.25 * c, 9u + (uint32_t)c, c != 1, 0.03125 * c};
 		channel->scale = shape.scale;
 		for (int axis = 0; axis < 3; axis++) {
 			channel->marginal[axis] = malloc(extents[axis] * sizeof(float));
@@ -84,15 +86,12 @@ FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 	return model;
 }
 
-FIXTURE void vector_model_free(struct model *model)
-{
-	model_free(model);
-}
+FIXTURE void vector_model_free(struct model *model) { model_free(model); }
 
 /* The model as sections, and a head that fits them; the caller may change either before record_write. */
 FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct record_head *head, struct section_list *sections)
 {
-	struct encode_request request = { .name_bytes = strlen(name), .record_bytes_max = 60400 };
+	struct encode_request request = {.name_bytes = strlen(name), .record_bytes_max = 60400};
 	struct model *decoded = NULL, *model = vector_model(shape, (uint32_t)strlen(name) * 7 + (unsigned char)name[0]);
 	fixture_head(head, name);
 	head->dims = model->dims;
@@ -100,7 +99,8 @@ FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct r
 	memset(sections, 0, sizeof *sections);
 	assert_int_equal(PAPER_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) }; /* invented: there is no source */
+		head->layers[l].fidelity = (struct fidelity){0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1),
+		                                             2.0 / (l + 1)}; /* invented: there is no source */
 	vector_model_free(model);
 }
 
@@ -115,9 +115,9 @@ FIXTURE uint8_t *vector_record(const char *name, struct vector_shape shape, size
 	return record;
 }
 
-static const struct vector_shape SHAPE_MARGINALS = { { 4, 4, 4 }, 0, 0, 0, 0.5 };
-static const struct vector_shape SHAPE_PAIRS = { { 4, 5, 6 }, 6, 7, 0, 0.25 };
-static const struct vector_shape SHAPE_FULL = { { 6, 5, 8 }, 8, 9, 5, 2.0 };
+static const struct vector_shape SHAPE_MARGINALS = {{4, 4, 4}, 0, 0, 0, 0.5};
+static const struct vector_shape SHAPE_PAIRS = {{4, 5, 6}, 6, 7, 0, 0.25};
+static const struct vector_shape SHAPE_FULL = {{6, 5, 8}, 8, 9, 5, 2.0};
 
 /* An archive of records given as bytes; frees them. */
 FIXTURE void vector_archive(const char *path, uint8_t *const *records, const size_t *bytes, size_t count)

@@ -136,12 +136,13 @@ FIXTURE void make_record_offset(const char *path) { page_change(path, change_off
 FIXTURE void make_record_swapped(const char *path) { page_change(path, change_swap); }
 
 /* Writes an archive by hand, so that what archive_writer refuses can be made. gap: a byte before the last record. */
-FIXTURE void raw_archive(const char *path, uint8_t *const *records, const size_t *bytes, const char *const *names, size_t count, bool gap)
+FIXTURE void raw_archive(const char *path, uint8_t *const *records, const size_t *bytes, const char *const *names, size_t count,
+                         bool gap)
 {
-	struct byte_buffer file = { 0 };
-	uint8_t page[PAGE_BYTES] = { 0 };
-	struct byte_buffer entries = { .bytes = page, .capacity = PAGE_BYTES };
-	struct archive_header header = { .major = 1, .count = count, .page_count = 1, .depth = 1 };
+	struct byte_buffer file = {0};
+	uint8_t page[PAGE_BYTES] = {0};
+	struct byte_buffer entries = {.bytes = page, .capacity = PAGE_BYTES};
+	struct archive_header header = {.major = 1, .count = count, .page_count = 1, .depth = 1};
 	write_zeros(&file, ARCHIVE_HEADER_BYTES);
 	write_bytes(&entries, PAGE_MAGIC, 4);
 	write_u16(&entries, 0);
@@ -168,7 +169,7 @@ FIXTURE void raw_archive(const char *path, uint8_t *const *records, const size_t
 
 FIXTURE void make_duplicate(const char *path)
 {
-	static const char *const names[] = { "blue", "blue" };
+	static const char *const names[] = {"blue", "blue"};
 	uint8_t *records[2];
 	size_t bytes[2];
 	for (int i = 0; i < 2; i++)
@@ -180,7 +181,7 @@ FIXTURE void make_duplicate(const char *path)
 
 FIXTURE void make_gap(const char *path)
 {
-	static const char *const names[] = { "blue", "red" };
+	static const char *const names[] = {"blue", "red"};
 	uint8_t *records[2];
 	size_t bytes[2];
 	for (int i = 0; i < 2; i++)
@@ -311,9 +312,9 @@ FIXTURE void change_overflow(struct record_head *head, struct section_list *sect
 /* Everything as large as it may be: values meet their limit, or are 0. */
 FIXTURE void change_limits(struct record_head *head, struct section_list *sections)
 {
-	head->colour[0] = (struct colour_fit){ 1e308, 0, 1, 1, 0 };
-	head->colour[1] = (struct colour_fit){ -1e308, 1e154, 1, 1, 0 };
-	head->colour[2] = (struct colour_fit){ 0, 1e150, 1, 1, 0 };
+	head->colour[0] = (struct colour_fit){1e308, 0, 1, 1, 0};
+	head->colour[1] = (struct colour_fit){-1e308, 1e154, 1, 1, 0};
+	head->colour[2] = (struct colour_fit){0, 1e150, 1, 1, 0};
 	for (int c = 0; c < 3; c++) {
 		uint8_t *marginals = sections->bytes[c].bytes;
 		put(marginals, UINT64_C(0x5FE3E9F5B0F5A5A5), 8); /* about 4.8e153 */

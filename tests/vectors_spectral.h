@@ -26,11 +26,11 @@ FIXTURE void vector_lattice(struct lattice_dims d, double scale, struct lattice 
 }
 
 /* Fitted and encoded; the caller may change the sections before record_write. Error figures are invented, as for the others. */
-FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, double scale, uint32_t budget, struct record_head *head,
-                                   struct section_list *sections)
+FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, double scale, uint32_t budget,
+                                    struct record_head *head, struct section_list *sections)
 {
-	const struct fit_options options = { .profile = PROFILE_SPECTRAL, .budget_bytes = budget, .effort = 5 };
-	const struct encode_request request = { .options = &options, .name_bytes = strlen(name), .record_bytes_max = budget };
+	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = budget, .effort = 5};
+	const struct encode_request request = {.options = &options, .name_bytes = strlen(name), .record_bytes_max = budget};
 	struct model *model = NULL, *decoded = NULL;
 	struct lattice lattice;
 	vector_lattice(dims, scale, &lattice);
@@ -41,9 +41,10 @@ FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, 
 	head->options = options;
 	head->horizon_limit = -0.0625;
 	memset(sections, 0, sizeof *sections);
-	assert_int_equal(SPECTRAL_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
+	assert_int_equal(SPECTRAL_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL),
+	                 BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		head->layers[l].fidelity = (struct fidelity){ 0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1) };
+		head->layers[l].fidelity = (struct fidelity){0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1)};
 	model_free(model);
 	model_free(decoded);
 	lattice_free(&lattice);
@@ -66,20 +67,20 @@ FIXTURE void vector_spectral(const char *path, struct lattice_dims dims, double 
 	vector_spectral_write(path, &head, &sections);
 }
 
-static void make_spectral(const char *path) { vector_spectral(path, (struct lattice_dims){ 16, 15, 6 }, 1, 1500); }
+static void make_spectral(const char *path) { vector_spectral(path, (struct lattice_dims){16, 15, 6}, 1, 1500); }
 /* Enough cells along theta_h and theta_d for weights. */
-static void make_spectral_weights(const char *path) { vector_spectral(path, (struct lattice_dims){ 21, 20, 4 }, 1, 2000); }
-static void make_spectral_least(const char *path) { vector_spectral(path, (struct lattice_dims){ 4, 4, 4 }, 1, 60400); }
-static void make_spectral_bright(const char *path) { vector_spectral(path, (struct lattice_dims){ 4, 5, 6 }, 1e300, 60400); }
-static void make_spectral_dark(const char *path) { vector_spectral(path, (struct lattice_dims){ 4, 5, 6 }, 1e-300, 60400); }
-static void make_spectral_zero(const char *path) { vector_spectral(path, (struct lattice_dims){ 4, 4, 4 }, 0, 60400); }
+static void make_spectral_weights(const char *path) { vector_spectral(path, (struct lattice_dims){21, 20, 4}, 1, 2000); }
+static void make_spectral_least(const char *path) { vector_spectral(path, (struct lattice_dims){4, 4, 4}, 1, 60400); }
+static void make_spectral_bright(const char *path) { vector_spectral(path, (struct lattice_dims){4, 5, 6}, 1e300, 60400); }
+static void make_spectral_dark(const char *path) { vector_spectral(path, (struct lattice_dims){4, 5, 6}, 1e-300, 60400); }
+static void make_spectral_zero(const char *path) { vector_spectral(path, (struct lattice_dims){4, 4, 4}, 0, 60400); }
 
 /* Just enough content for a preview and what follows it: where a coder that does better leaves one layer, take more cells. */
 static void make_spectral_layers(const char *path)
 {
 	struct record_head head;
 	struct section_list sections;
-	vector_spectral_encode("material", (struct lattice_dims){ 17, 15, 7 }, 1, 6000, &head, &sections);
+	vector_spectral_encode("material", (struct lattice_dims){17, 15, 7}, 1, 6000, &head, &sections);
 	assert_int_equal(head.layer_count, 2);
 	vector_spectral_write(path, &head, &sections);
 }
@@ -89,7 +90,7 @@ FIXTURE void vector_spectral_changed(const char *path, int section, size_t at, u
 {
 	struct record_head head;
 	struct section_list sections;
-	vector_spectral_encode("material", (struct lattice_dims){ 4, 4, 4 }, 1, 60400, &head, &sections);
+	vector_spectral_encode("material", (struct lattice_dims){4, 4, 4}, 1, 60400, &head, &sections);
 	store_u32(sections.bytes[section].bytes + at, value);
 	vector_spectral_write(path, &head, &sections);
 }

@@ -22,7 +22,8 @@ static size_t number_bytes(bp_number number)
 size_t bp_table_bytes(uint32_t theta_h, uint32_t theta_d, uint32_t phi_d, const bp_table_options *options)
 {
 	const struct lattice_dims dims = {theta_h, theta_d, phi_d};
-	return lattice_dims_legal(dims) ? lattice_cells(dims) * CHANNELS * number_bytes(options ? options->number : BP_NUMBER_FLOAT) : 0;
+	return lattice_dims_legal(dims) ? lattice_cells(dims) * CHANNELS * number_bytes(options ? options->number : BP_NUMBER_FLOAT)
+	                                : 0;
 }
 
 static bp_status options_check(const bp_table_options *options, bp_error *error)
@@ -37,7 +38,8 @@ static bp_status options_check(const bp_table_options *options, bp_error *error)
 	if (options->continued != 0 && options->continued != 1)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "continued is %d, it must be 0 or 1", options->continued);
 	if (!(options->max_log_rmse >= 0))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more",
+		                 options->max_log_rmse);
 	return BP_OK;
 }
 
@@ -67,7 +69,8 @@ static bp_status table_put(const struct model *model, const bp_table_options *op
 		status = model_expand(model, 0, &table, error);
 	if (!status && !options->continued) {
 		below = malloc(lattice_cells(model->dims));
-		status = below ? lattice_below_horizon(model->dims, model->horizon_limit, below, error) : error_memory(error, lattice_cells(model->dims));
+		status = below ? lattice_below_horizon(model->dims, model->horizon_limit, below, error)
+		               : error_memory(error, lattice_cells(model->dims));
 	}
 	for (int c = 0; !status && c < CHANNELS; c++)
 		channel_put(&table, c, below, options, values);
@@ -76,7 +79,8 @@ static bp_status table_put(const struct model *model, const bp_table_options *op
 	return status;
 }
 
-bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values, size_t bytes, bp_error *error)
+bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values, size_t bytes,
+                           bp_error *error)
 {
 	const bp_table_options usual = {.struct_bytes = sizeof usual};
 	struct index_page leaf;
@@ -96,8 +100,9 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
 		return status;
 	const size_t wanted = bp_table_bytes(head.dims.theta_h, head.dims.theta_d, head.dims.phi_d, options);
 	if (!values || bytes != wanted)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: a table of %u x %u x %u cells takes %zu bytes, there is room for %zu",
-		                 head.name, head.dims.theta_h, head.dims.theta_d, head.dims.phi_d, wanted, values ? bytes : 0);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+		                 "%s: a table of %u x %u x %u cells takes %zu bytes, there is room for %zu", head.name, head.dims.theta_h,
+		                 head.dims.theta_d, head.dims.phi_d, wanted, values ? bytes : 0);
 	environment_enter(&before);
 	status = archive_entry_load(archive, &entry, &head, record_layers_for(&head, options->max_log_rmse), &model, error);
 	if (!status)

@@ -9,7 +9,7 @@ enum { AT_MAJOR = 8, AT_FLAGS = 12, AT_FILE_BYTES = 16, AT_COUNT = 24, AT_INDEX 
 
 void archive_header_write(const struct archive_header *header, uint8_t bytes[ARCHIVE_HEADER_BYTES])
 {
-	struct byte_buffer out = { .bytes = bytes, .capacity = ARCHIVE_HEADER_BYTES };
+	struct byte_buffer out = {.bytes = bytes, .capacity = ARCHIVE_HEADER_BYTES};
 	write_bytes(&out, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES);
 	write_u16(&out, header->major);
 	write_u16(&out, header->minor);
@@ -29,8 +29,8 @@ static bp_status header_check(const struct archive_header *header, uint64_t file
 	uint64_t pages_bytes = (uint64_t)header->page_count * PAGE_BYTES;
 	if (header->file_bytes != file_bytes)
 		return error_set(error, BP_ERROR_CORRUPT, file_bytes < header->file_bytes ? file_bytes : header->file_bytes,
-		                 "the file has %llu bytes, its header says %llu: it was cut or extended",
-		                 (unsigned long long)file_bytes, (unsigned long long)header->file_bytes);
+		                 "the file has %llu bytes, its header says %llu: it was cut or extended", (unsigned long long)file_bytes,
+		                 (unsigned long long)header->file_bytes);
 	if (header->count > ARCHIVE_COUNT_MAX || header->page_count > ARCHIVE_PAGES_MAX || header->depth > INDEX_DEPTH_MAX ||
 	    (header->count == 0) != (header->page_count == 0) || (header->count == 0) != (header->depth == 0) ||
 	    header->page_count < header->depth || header->count > (uint64_t)header->page_count * LEAF_ENTRIES_MAX)

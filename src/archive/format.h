@@ -12,8 +12,12 @@
 
 #include "brdfpack.h"
 
-#define ARCHIVE_MAGIC "\x8b" "BPK\r\n\x1a\n"
-#define PAGE_MAGIC "\x8b" "IDX"
+#define ARCHIVE_MAGIC \
+	"\x8b" \
+	"BPK\r\n\x1a\n"
+#define PAGE_MAGIC \
+	"\x8b" \
+	"IDX"
 
 enum {
 	ARCHIVE_MAGIC_BYTES = 8,

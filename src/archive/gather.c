@@ -90,10 +90,7 @@ bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_
 	return BP_OK;
 }
 
-uint64_t bp_writer_count(const bp_writer *writer)
-{
-	return writer->count;
-}
+uint64_t bp_writer_count(const bp_writer *writer) { return writer->count; }
 
 /* Adds all; the archive writer is gone after a failure. */
 static bp_status all_add(const bp_writer *writer, struct archive_writer *to, bp_error *error)

@@ -42,7 +42,7 @@ void index_builder_free(struct index_builder *builder);
 /* What is already known of a page before it is read: from its parent, or from the header for the root. */
 struct page_expect {
 	uint32_t number;
-	uint32_t level;         /* 0: leaf */
+	uint32_t level; /* 0: leaf */
 	uint64_t first_ordinal;
 	const char *first_name; /* NULL: unknown (the root) */
 	uint32_t first_name_bytes;

@@ -7,10 +7,7 @@
 
 enum { LEAF_FIXED = 8 + 4 + 4 + 1, INNER_FIXED = 4 + 8 + 1 };
 
-static size_t page_fixed_bytes(const struct index_page *page)
-{
-	return page->level ? INNER_FIXED : LEAF_FIXED;
-}
+static size_t page_fixed_bytes(const struct index_page *page) { return page->level ? INNER_FIXED : LEAF_FIXED; }
 
 const char *index_entry_name(const struct index_page *page, uint32_t i, uint32_t *name_bytes)
 {
@@ -35,7 +32,7 @@ void index_leaf_entry(const struct index_page *leaf, uint32_t i, struct index_en
 struct page_expect index_child(const struct index_page *inner, uint32_t i)
 {
 	const uint8_t *entry = inner->bytes + inner->entry_at[i];
-	struct page_expect child = { .number = load_u32(entry), .level = inner->level - 1, .first_ordinal = load_u64(entry + 4) };
+	struct page_expect child = {.number = load_u32(entry), .level = inner->level - 1, .first_ordinal = load_u64(entry + 4)};
 	child.first_name = index_entry_name(inner, i, &child.first_name_bytes);
 	return child;
 }

@@ -21,10 +21,7 @@ void index_builder_free(struct index_builder *builder)
 }
 
 /* Bytes before the name in an entry of this level; the name's length is the last of them. */
-static size_t entry_fixed_bytes(uint32_t level)
-{
-	return level ? 4 + 8 + 1 : 8 + 4 + 4 + 1;
-}
+static size_t entry_fixed_bytes(uint32_t level) { return level ? 4 + 8 + 1 : 8 + 4 + 4 + 1; }
 
 /*
  * Packs the entries of one level into pages, each as full as it gets, and notes in *above the inner
@@ -37,8 +34,8 @@ static bp_status level_write(const struct byte_buffer *entries, uint32_t level, 
 	uint64_t ordinal = 0;
 	*pages = 0;
 	while (at < entries->count) {
-		uint8_t page[PAGE_BYTES] = { 0 };
-		struct byte_buffer out = { .bytes = page, .capacity = PAGE_BYTES };
+		uint8_t page[PAGE_BYTES] = {0};
+		struct byte_buffer out = {.bytes = page, .capacity = PAGE_BYTES};
 		size_t end = at, count = 0;
 		uint64_t first = level ? load_u64(entries->bytes + at + 4) : ordinal;
 		const uint8_t *name = entries->bytes + at + fixed;
@@ -74,7 +71,7 @@ bp_status index_write(const struct index_builder *builder, index_page_fn *write,
                       uint32_t *depth, bp_error *error)
 {
 	const struct byte_buffer *entries = &builder->entries;
-	struct byte_buffer held = { 0 };
+	struct byte_buffer held = {0};
 	uint32_t pages = 0, level = 0, number = 0;
 	bp_status status = BP_OK;
 
@@ -85,7 +82,7 @@ bp_status index_write(const struct index_builder *builder, index_page_fn *write,
 		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%llu materials; an archive holds at most %llu",
 		                 (unsigned long long)builder->count, (unsigned long long)ARCHIVE_COUNT_MAX);
 	while (builder->count) {
-		struct byte_buffer above = { 0 };
+		struct byte_buffer above = {0};
 		status = level_write(entries, level, write, user, &number, &above, &pages, error);
 		byte_buffer_free(&held);
 		held = above;

@@ -22,7 +22,7 @@ static void info_fill(const struct record_head *head, uint64_t offset, bp_materi
 	info->record_offset = offset;
 	for (int c = 0; c < 3; c++) {
 		const struct colour_fit *fit = &head->colour[c];
-		info->channels[c] = (bp_channel){ fit->diffuse, fit->specular, fit->rejected, fit->iterations, fit->converged };
+		info->channels[c] = (bp_channel){fit->diffuse, fit->specular, fit->rejected, fit->iterations, fit->converged};
 	}
 	info->layer_count = head->layer_count;
 	info->section_count = head->section_count;
@@ -37,7 +37,8 @@ static void info_fill(const struct record_head *head, uint64_t offset, bp_materi
 }
 
 /* The head of material `index`, and where its record is. */
-static bp_status head_find(const bp_archive *archive, uint64_t index, struct index_entry *entry, struct record_head *head, bp_error *error)
+static bp_status head_find(const bp_archive *archive, uint64_t index, struct index_entry *entry, struct record_head *head,
+                           bp_error *error)
 {
 	struct index_page leaf;
 	leaf.count = 0;
@@ -65,7 +66,8 @@ bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material
 static bp_status element_check(size_t element_bytes, size_t known, const void *elements, uint32_t capacity, bp_error *error)
 {
 	if (element_bytes != known)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "element_bytes is %zu, an element has %zu", element_bytes, known);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "element_bytes is %zu, an element has %zu", element_bytes,
+		                 known);
 	if (capacity && !elements)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no place for %u elements", capacity);
 	return BP_OK;
@@ -83,15 +85,16 @@ bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t el
 		return status;
 	for (uint32_t l = 0; l < head.layer_count && l < capacity; l++) {
 		const struct fidelity *figures = &head.layers[l].fidelity;
-		layers[l] = (bp_layer){ head.layers[l].bytes, figures->log_rmse, figures->cube_root_rmse, figures->largest_relative, figures->seen_log_rmse };
+		layers[l] = (bp_layer){head.layers[l].bytes, figures->log_rmse, figures->cube_root_rmse, figures->largest_relative,
+		                       figures->seen_log_rmse};
 	}
 	if (count)
 		*count = head.layer_count;
 	return BP_OK;
 }
 
-bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_section *sections, uint32_t capacity,
-                              uint32_t *count, bp_error *error)
+bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_section *sections,
+                              uint32_t capacity, uint32_t *count, bp_error *error)
 {
 	struct index_entry entry;
 	struct record_head head;
@@ -102,7 +105,7 @@ bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t 
 		return status;
 	for (uint32_t i = 0; i < head.section_count && i < capacity; i++) {
 		const struct record_section *from = &head.sections[i];
-		sections[i] = (bp_section){ from->type, from->codec, from->version, from->layer, from->flags, from->bytes, from->error };
+		sections[i] = (bp_section){from->type, from->codec, from->version, from->layer, from->flags, from->bytes, from->error};
 	}
 	if (count)
 		*count = head.section_count;

@@ -15,7 +15,7 @@ struct bp_material {
 	struct sampler *sampler;     /* NULL: loaded without */
 	struct albedo_cache *albedo; /* the same */
 	bp_loaded loaded;
-	bp_allocator allocator;      /* where all of this lies; alloc NULL: malloc */
+	bp_allocator allocator; /* where all of this lies; alloc NULL: malloc */
 };
 
 /* For the calls that make or free a material. Returns what memory_allocator_set wants afterwards. */
@@ -30,7 +30,8 @@ static bp_status options_check(const bp_load_options *options, bp_error *error)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_load_options) = %zu",
 		                 options->struct_bytes, sizeof *options);
 	if (!(options->max_log_rmse >= 0))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more",
+		                 options->max_log_rmse);
 	if (options->form != BP_FORM_EXPANDED && options->form != BP_FORM_COMPACT && options->form != BP_FORM_PREVIEW)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no memory form %d", (int)options->form);
 	if ((int)options->colour < BP_COLOUR_RGB || (int)options->colour > BP_COLOUR_B)
@@ -59,7 +60,8 @@ static bp_status channel_sections_keep(struct record_head *head, uint32_t channe
 	uint32_t kept = 0;
 
 	if (head->profile != PROFILE_PAPER)
-		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "%s: records of this profile do not keep the channels apart", head->name);
+		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "%s: records of this profile do not keep the channels apart",
+		                 head->name);
 	for (uint32_t n = 0; n < head->section_count; n++)
 		if (!(head->sections[n].flags & all) || head->sections[n].flags & wanted)
 			head->sections[kept++] = head->sections[n];
@@ -97,8 +99,8 @@ static bp_status material_build(const struct model *model, const bp_load_options
 }
 
 /* Decodes and builds; *material is the caller's to free in any case. The arithmetic and the allocator are as they should be. */
-static bp_status material_fill(const bp_archive *archive, const struct index_entry *entry, struct record_head *head, uint32_t layers,
-                               const bp_load_options *options, bp_material **out, bp_error *error)
+static bp_status material_fill(const bp_archive *archive, const struct index_entry *entry, struct record_head *head,
+                               uint32_t layers, const bp_load_options *options, bp_material **out, bp_error *error)
 {
 	struct model *model = NULL;
 	bp_material *material = memory_alloc_kept(sizeof *material);
@@ -114,21 +116,20 @@ static bp_status material_fill(const bp_archive *archive, const struct index_ent
 }
 
 /* What loading may need: 17 bytes per cell while the model is expanded, 6 of the result, and a few tables. */
-static double need_of(struct lattice_dims dims)
-{
-	return 24.0 * (double)lattice_cells(dims) + 1e6;
-}
+static double need_of(struct lattice_dims dims) { return 24.0 * (double)lattice_cells(dims) + 1e6; }
 
 static bp_status need_check(const struct record_head *head, size_t most, bp_error *error)
 {
 	const double limit = most > 0 ? (double)most : 2 * need_of(LATTICE_MERL), need = need_of(head->dims);
 	if (need <= limit)
 		return BP_OK;
-	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: a table of %u x %u x %u cells may need %.0f MB, the limit is %.0f; max_memory_bytes sets it",
+	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+	                 "%s: a table of %u x %u x %u cells may need %.0f MB, the limit is %.0f; max_memory_bytes sets it",
 	                 head->name, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, need / 1e6, limit / 1e6);
 }
 
-bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out, bp_error *error)
+bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out,
+                           bp_error *error)
 {
 	const bp_load_options whole = {.struct_bytes = sizeof whole};
 	struct index_page leaf;
@@ -172,7 +173,8 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 		.layers = layers,
 		.log_rmse = head.layers[layers - 1].fidelity.log_rmse,
 		.read_bytes = bytes_to_read(&head, layers),
-		.memory_bytes = sizeof *material + table_bytes(material->table) + (material->sampler ? sampler_bytes(material->sampler) + albedo_cache_bytes() : 0),
+		.memory_bytes = sizeof *material + table_bytes(material->table) +
+	                    (material->sampler ? sampler_bytes(material->sampler) + albedo_cache_bytes() : 0),
 		.form = material->loaded.form,
 		.colour = options->colour,
 		.sampling = options->sampling,
@@ -200,8 +202,8 @@ void bp_material_free(bp_material *material)
 bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_error *error)
 {
 	if (loaded->struct_bytes != sizeof *loaded)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_loaded) = %zu", loaded->struct_bytes,
-		                 sizeof *loaded);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_loaded) = %zu",
+		                 loaded->struct_bytes, sizeof *loaded);
 	*loaded = material->loaded;
 	return BP_OK;
 }
@@ -216,7 +218,8 @@ void bp_material_nearest(const bp_material *material, const float wi[3], const f
 	table_nearest(material->table, wi, wo, rgb);
 }
 
-void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3])
+void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
+                                float *const rgb[3])
 {
 	table_evaluate_batch(material->table, count, wi, wo, rgb);
 }
@@ -242,27 +245,31 @@ void bp_material_albedo(const bp_material *material, float theta_o, float rgb[3]
 		rgb[0] = rgb[1] = rgb[2] = 0;
 }
 
-void bp_material_sample_batch(const bp_material *material, size_t count, const float *const wo[3], const float *const u[3], float *const wi[3],
-                              float *pdf)
+void bp_material_sample_batch(const bp_material *material, size_t count, const float *const wo[3], const float *const u[3],
+                              float *const wi[3], float *pdf)
 {
 	for (size_t n = 0; n < count; n++) {
 		float in[3];
-		pdf[n] = bp_material_sample(material, (const float[]){wo[0][n], wo[1][n], wo[2][n]}, (const float[]){u[0][n], u[1][n], u[2][n]}, in);
+		pdf[n] = bp_material_sample(material, (const float[]){wo[0][n], wo[1][n], wo[2][n]},
+		                            (const float[]){u[0][n], u[1][n], u[2][n]}, in);
 		for (int c = 0; c < 3; c++)
 			wi[c][n] = in[c];
 	}
 }
 
-void bp_material_pdf_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3], float *pdf)
+void bp_material_pdf_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
+                           float *pdf)
 {
 	for (size_t n = 0; n < count; n++)
-		pdf[n] = bp_material_pdf(material, (const float[]){wi[0][n], wi[1][n], wi[2][n]}, (const float[]){wo[0][n], wo[1][n], wo[2][n]});
+		pdf[n] = bp_material_pdf(material, (const float[]){wi[0][n], wi[1][n], wi[2][n]},
+		                         (const float[]){wo[0][n], wo[1][n], wo[2][n]});
 }
 
 bp_status bp_material_albedo_table(const bp_material *material, size_t count, float *rgb, bp_error *error)
 {
 	if (count < 1 || count > ALBEDO_TABLE_MAX || !rgb)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an albedo table has 1 to %d entries, not %zu", ALBEDO_TABLE_MAX, count);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an albedo table has 1 to %d entries, not %zu", ALBEDO_TABLE_MAX,
+		                 count);
 	if (!material->albedo)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the material was loaded without sampling, so it has no albedo");
 	for (size_t n = 0; n < count; n++)

@@ -25,10 +25,15 @@ struct likeness {
 	struct fit_options options;
 };
 
-static bp_status likeness_check(struct likeness *first, const struct bp_archive *archive, const struct record_head *head, bp_error *error)
+static bp_status likeness_check(struct likeness *first, const struct bp_archive *archive, const struct record_head *head,
+                                bp_error *error)
 {
 	if (!first->known) {
-		*first = (struct likeness){.known = true, .archive = archive, .profile = head->profile, .codec_version = head->codec_version, .options = head->options};
+		*first = (struct likeness){.known = true,
+		                           .archive = archive,
+		                           .profile = head->profile,
+		                           .codec_version = head->codec_version,
+		                           .options = head->options};
 		strcpy(first->name, head->name);
 		return BP_OK;
 	}
@@ -39,12 +44,15 @@ static bp_status likeness_check(struct likeness *first, const struct bp_archive 
 	                   : head->options.effort != first->options.effort             ? "effort"
 	                                                                               : NULL;
 	return !what ? BP_OK
-	             : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: made with another %s than %s in %s: these are not shards of one build; build "
-	                         "them with the same program and options", head->name, what, first->name, archive_path(first->archive));
+	             : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+	                         "%s: made with another %s than %s in %s: these are not shards of one build; build "
+	                         "them with the same program and options",
+	                         head->name, what, first->name, archive_path(first->archive));
 }
 
-static bp_status record_copy(const struct bp_archive *archive, const struct index_entry *entry, const struct copy_options *options,
-                             struct likeness *likeness, struct archive_writer *writer, struct copy_totals *totals, bp_error *error)
+static bp_status record_copy(const struct bp_archive *archive, const struct index_entry *entry,
+                             const struct copy_options *options, struct likeness *likeness, struct archive_writer *writer,
+                             struct copy_totals *totals, bp_error *error)
 {
 	struct record_head head;
 	uint8_t *record = NULL, *kept = NULL;
@@ -89,8 +97,8 @@ static bp_status writer_end(struct archive_writer *writer, bp_status status, con
 	return status;
 }
 
-bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index, uint64_t count, const struct copy_options *options,
-                         struct copy_totals *totals, bp_error *error)
+bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index, uint64_t count,
+                         const struct copy_options *options, struct copy_totals *totals, bp_error *error)
 {
 	struct archive_writer *writer = NULL;
 	struct index_page leaf;
@@ -179,8 +187,8 @@ static bp_status first_copy(struct walk *walk, const struct copy_options *option
 		last = walk->heap[0];
 		*failed = last->number;
 		if (!options->replace)
-			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: also in %s; with --replace the later one is taken", entry.name,
-			                 archive_path(before));
+			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s: also in %s; with --replace the later one is taken",
+			                 entry.name, archive_path(before));
 		entry = last->entry;
 		totals->replaced++;
 		status = walk_advance(walk, error);
@@ -189,8 +197,8 @@ static bp_status first_copy(struct walk *walk, const struct copy_options *option
 }
 
 /* Every input at its first name. */
-static bp_status walk_start(const struct bp_archive *const *archives, size_t count, struct input *inputs, struct walk *walk, size_t *failed,
-                            bp_error *error)
+static bp_status walk_start(const struct bp_archive *const *archives, size_t count, struct input *inputs, struct walk *walk,
+                            size_t *failed, bp_error *error)
 {
 	for (size_t n = 0; n < count; n++) {
 		struct input *input = &inputs[n];

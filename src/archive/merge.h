@@ -14,27 +14,29 @@
 
 struct copy_options {
 	const char *output;
-	double max_log_rmse;  /* > 0: keep the fewest layers whose log RMSE of what can be seen is at most this, all where none is; 0: keep all */
-	bool replace;         /* merge: of a name that several inputs have, take the last input's; otherwise that is refused */
-	bool alike;           /* merge: refuse records of other options, profile or codec version than the first one's: they are of no one build */
-	bool (*stop)(void);   /* asked before every record; true: nothing is written, *stopped is set. NULL: never */
+	double
+		max_log_rmse; /* > 0: keep the fewest layers whose log RMSE of what can be seen is at most this, all where none is; 0: keep all */
+	bool replace; /* merge: of a name that several inputs have, take the last input's; otherwise that is refused */
+	bool
+		alike; /* merge: refuse records of other options, profile or codec version than the first one's: they are of no one build */
+	bool (*stop)(void); /* asked before every record; true: nothing is written, *stopped is set. NULL: never */
 };
 
 struct copy_totals {
-	uint64_t copied;      /* materials written */
-	uint64_t replaced;    /* left out because a later input has the name */
-	uint64_t trimmed;     /* copied with fewer layers than they had */
+	uint64_t copied;               /* materials written */
+	uint64_t replaced;             /* left out because a later input has the name */
+	uint64_t trimmed;              /* copied with fewer layers than they had */
 	uint64_t bytes_from, bytes_to; /* of their records, before and after */
 	bool stopped;
-	bool reading;         /* after an error: it is about an input, not about the output */
+	bool reading; /* after an error: it is about an input, not about the output */
 };
 
 /*
  * Writes materials index[0..count-1] of one archive (strictly ascending; NULL: all of them) to another.
  * Errors: those of reader and writer; BP_ERROR_ARGUMENT where count is 0.
  */
-bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index, uint64_t count, const struct copy_options *options,
-                         struct copy_totals *totals, bp_error *error);
+bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index, uint64_t count,
+                         const struct copy_options *options, struct copy_totals *totals, bp_error *error);
 
 /*
  * Writes all materials of `count` archives to one. A name in two of them is BP_ERROR_BAD_INPUT, naming both, unless

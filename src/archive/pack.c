@@ -16,23 +16,27 @@ static bp_status options_read(const bp_pack_options *options, struct fit_options
 	static const bp_pack_options USUAL = {.struct_bytes = sizeof USUAL};
 	options = options ? options : &USUAL;
 	if (options->struct_bytes != sizeof *options)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_pack_options) = %zu", options->struct_bytes,
-		                 sizeof *options);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_pack_options) = %zu",
+		                 options->struct_bytes, sizeof *options);
 	if (options->profile && options->profile != PROFILE_PAPER && options->profile != PROFILE_SPECTRAL)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no profile %u; 1 is paper, 2 spectral", options->profile);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no profile %u; 1 is paper, 2 spectral",
+		                 options->profile);
 	if (options->budget_bytes && (options->budget_bytes < RECORD_BUDGET_MIN || options->budget_bytes > RECORD_BUDGET_MAX))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a budget of %u bytes: %d to %d are possible", options->budget_bytes,
-		                 RECORD_BUDGET_MIN, RECORD_BUDGET_MAX);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a budget of %u bytes: %d to %d are possible",
+		                 options->budget_bytes, RECORD_BUDGET_MIN, RECORD_BUDGET_MAX);
 	if (options->max_error != 0 && !(options->max_error >= ERROR_LEAST && options->max_error <= ERROR_MOST))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an error bound of %g: %g to %g are possible", options->max_error, ERROR_LEAST,
-		                 ERROR_MOST);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an error bound of %g: %g to %g are possible",
+		                 options->max_error, ERROR_LEAST, ERROR_MOST);
 	if (options->budget_bytes && options->max_error != 0)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a budget and an error bound exclude each other");
 	if (options->effort > EFFORT_MOST)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an effort of %u: 1 to %d are possible", options->effort, EFFORT_MOST);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an effort of %u: 1 to %d are possible", options->effort,
+		                 EFFORT_MOST);
 	*fit = (struct fit_options){
 		.profile = options->profile ? (enum profile)options->profile : PROFILE_SPECTRAL,
-		.budget_bytes = options->max_error > 0 ? RECORD_BUDGET_MAX : options->budget_bytes ? options->budget_bytes : BUDGET_USUAL,
+		.budget_bytes = options->max_error > 0  ? RECORD_BUDGET_MAX
+	                    : options->budget_bytes ? options->budget_bytes
+	                                            : BUDGET_USUAL,
 		.max_error = options->max_error,
 		.effort = options->effort ? (int)options->effort : EFFORT_USUAL,
 	};
@@ -46,7 +50,8 @@ static bp_status measured_check(const bp_measured *measured, bp_error *error)
 	if (!measured->values)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there are no values");
 	if (measured->number != BP_NUMBER_FLOAT && measured->number != BP_NUMBER_DOUBLE)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "measured values are float or double, not of kind %d", (int)measured->number);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "measured values are float or double, not of kind %d",
+		                 (int)measured->number);
 	if (measured->layout != BP_LAYOUT_PLANES && measured->layout != BP_LAYOUT_INTERLEAVED)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no layout %d", (int)measured->layout);
 	for (int c = 0; c < CHANNELS; c++)
@@ -90,8 +95,8 @@ static bp_status lattice_make(const bp_measured *measured, struct lattice *latti
 	return BP_OK;
 }
 
-bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_options *options, uint8_t **record, size_t *record_bytes,
-                  bp_error *error)
+bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_options *options, uint8_t **record,
+                  size_t *record_bytes, bp_error *error)
 {
 	struct fit_options fit;
 	struct lattice lattice = {0};
@@ -122,9 +127,11 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 	return status;
 }
 
-bp_status bp_record_rename(const uint8_t *record, size_t record_bytes, const char *name, uint8_t **out, size_t *out_bytes, bp_error *error)
+bp_status bp_record_rename(const uint8_t *record, size_t record_bytes, const char *name, uint8_t **out, size_t *out_bytes,
+                           bp_error *error)
 {
 	if (!record || !name || !out || !out_bytes)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a record, a name, and places for the copy and its size are needed");
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+		                 "a record, a name, and places for the copy and its size are needed");
 	return record_rename(record, record_bytes, name, out, out_bytes, error);
 }

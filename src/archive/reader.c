@@ -10,7 +10,7 @@
 struct bp_archive {
 	struct system_file *file; /* NULL: read through source */
 	bp_source source;
-	char *path;               /* "" where there is none */
+	char *path; /* "" where there is none */
 	struct archive_header header;
 	_Atomic uint64_t *bytes_read; /* apart, so that a const handle can count */
 	struct index_page root;       /* count 0 when the archive is empty */
@@ -42,19 +42,13 @@ bp_status archive_read(const struct bp_archive *archive, uint64_t offset, void *
 	*archive->bytes_read += got;
 	if (got == count)
 		return BP_OK;
-	return error_set(error, BP_ERROR_CORRUPT, end < offset + got ? end : offset + got, "the file ends here, bytes up to %llu were expected",
-	                 (unsigned long long)(offset + count));
+	return error_set(error, BP_ERROR_CORRUPT, end < offset + got ? end : offset + got,
+	                 "the file ends here, bytes up to %llu were expected", (unsigned long long)(offset + count));
 }
 
-const struct archive_header *archive_header(const struct bp_archive *archive)
-{
-	return &archive->header;
-}
+const struct archive_header *archive_header(const struct bp_archive *archive) { return &archive->header; }
 
-const char *archive_path(const struct bp_archive *archive)
-{
-	return archive->path;
-}
+const char *archive_path(const struct bp_archive *archive) { return archive->path; }
 
 bp_status archive_page_read(const struct bp_archive *archive, const struct page_expect *expect, struct index_page *page,
                             bp_error *error)
@@ -83,7 +77,7 @@ static bp_status header_and_root_read(struct bp_archive *archive, uint64_t file_
 		status = archive_header_parse(bytes, count, file_bytes, &archive->header, error);
 	if (status || archive->header.count == 0)
 		return status;
-	root = (struct page_expect){ .number = archive->header.page_count - 1, .level = archive->header.depth - 1 };
+	root = (struct page_expect){.number = archive->header.page_count - 1, .level = archive->header.depth - 1};
 	return archive_page_read(archive, &root, &archive->root, error);
 }
 
@@ -142,7 +136,8 @@ bp_status bp_archive_open_source(const bp_source *source, bp_archive **out, bp_e
 	bp_status status;
 
 	if (!source || !out || source->struct_bytes != sizeof *source || !source->read)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a bp_source with struct_bytes and read, and a place for the handle are needed");
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+		                 "a bp_source with struct_bytes and read, and a place for the handle are needed");
 	status = archive_new("", &archive, error);
 	if (status)
 		return status;
@@ -159,7 +154,8 @@ static int memory_read(void *user, uint64_t offset, void *bytes, size_t count)
 bp_status bp_archive_open_memory(const void *bytes, size_t count, bp_archive **out, bp_error *error)
 {
 	/* user is not written through, whatever its type */
-	const bp_source source = {.struct_bytes = sizeof source, .read = memory_read, .user = (void *)(uintptr_t)bytes, .bytes = count};
+	const bp_source source = {
+		.struct_bytes = sizeof source, .read = memory_read, .user = (void *)(uintptr_t)bytes, .bytes = count};
 	if (!bytes)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the archive's bytes are needed");
 	return bp_archive_open_source(&source, out, error);
@@ -177,15 +173,9 @@ void bp_archive_close(bp_archive *archive)
 	free(archive);
 }
 
-uint64_t bp_archive_count(const bp_archive *archive)
-{
-	return archive->header.count;
-}
+uint64_t bp_archive_count(const bp_archive *archive) { return archive->header.count; }
 
-uint64_t bp_archive_bytes_read(const bp_archive *archive)
-{
-	return *archive->bytes_read;
-}
+uint64_t bp_archive_bytes_read(const bp_archive *archive) { return *archive->bytes_read; }
 
 /* Follows one path of pages from the root to the leaf that holds the name (or, name NULL, the ordinal). */
 static bp_status leaf_find(const struct bp_archive *archive, const char *name, uint64_t ordinal, struct index_page *leaf,
@@ -284,8 +274,9 @@ static bp_status head_check(const struct index_entry *entry, const struct record
 {
 	if (strcmp(entry->name, head->name) != 0 || entry->head_bytes != head->head_bytes ||
 	    entry->record_bytes != head->record_bytes)
-		return error_set(error, BP_ERROR_CORRUPT, entry->offset, "the index promises \"%s\" of %u bytes here, there is \"%s\" of %u",
-		                 entry->name, entry->record_bytes, head->name, head->record_bytes);
+		return error_set(error, BP_ERROR_CORRUPT, entry->offset,
+		                 "the index promises \"%s\" of %u bytes here, there is \"%s\" of %u", entry->name, entry->record_bytes,
+		                 head->name, head->record_bytes);
 	return BP_OK;
 }
 
@@ -325,7 +316,8 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 	for (uint32_t i = 0; !status && i < head.section_count; i++) {
 		const struct record_section *section = &head.sections[i];
 		if (bytes_crc32(record + section->offset, section->bytes) != section->crc32)
-			status = error_set(error, BP_ERROR_CHECKSUM, entry->offset + section->offset, "the checksum of section %u differs", i);
+			status =
+				error_set(error, BP_ERROR_CHECKSUM, entry->offset + section->offset, "the checksum of section %u differs", i);
 	}
 	if (status) {
 		free(record);

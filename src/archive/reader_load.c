@@ -20,7 +20,7 @@ static bp_status record_fetch(void *user, uint64_t offset, uint8_t *bytes, size_
 bp_status archive_entry_load(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                              uint32_t layers, struct model **out, bp_error *error)
 {
-	struct fetch_place place = { .archive = archive, .offset = entry->offset };
+	struct fetch_place place = {.archive = archive, .offset = entry->offset};
 	bp_status status = record_decode(head, layers, record_fetch, &place, out, error);
 	if (status && error && error->offset != BP_NO_OFFSET)
 		error->offset += entry->offset;

@@ -29,8 +29,9 @@ struct scan {
 	recover_report_fn *report;
 	void *user;
 	struct seen *seen;
-	size_t count, capacity, record_count; /* records come before what only the index names, unless an archive stands behind another */
-	struct byte_buffer names;             /* each with its NUL: a million take some 10 MB, in fixed places they would take 256 */
+	size_t count, capacity,
+		record_count;                 /* records come before what only the index names, unless an archive stands behind another */
+	struct byte_buffer names;         /* each with its NUL: a million take some 10 MB, in fixed places they would take 256 */
 	uint8_t record[RECORD_BYTES_MAX]; /* the candidate; the scan is malloc'ed */
 };
 
@@ -72,7 +73,7 @@ static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, 
 	if (scan->names.count > UINT32_MAX - BP_NAME_BYTES_MAX - 1)
 		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: too many names to remember", scan->path);
 	entry = &scan->seen[scan->count++];
-	*entry = (struct seen){ .offset = offset, .bytes = bytes, .intact = intact, .name = (uint32_t)scan->names.count };
+	*entry = (struct seen){.offset = offset, .bytes = bytes, .intact = intact, .name = (uint32_t)scan->names.count};
 	write_bytes(&scan->names, name, strlen(name) + 1);
 	return scan->names.failed ? error_memory(error, scan->names.count) : BP_OK;
 }
@@ -122,7 +123,7 @@ static bool record_found(const struct scan *scan, const struct index_entry *entr
 static bp_status leaf_try(struct scan *scan, uint64_t offset, uint64_t *next, bp_error *error)
 {
 	struct index_page page;
-	struct page_expect expect = { 0 };
+	struct page_expect expect = {0};
 	*next = offset + 1;
 	if (scan_read(scan, offset, page.bytes, PAGE_BYTES) != PAGE_BYTES || load_u16(page.bytes + 4) != 0)
 		return BP_OK;
@@ -247,7 +248,7 @@ bp_status archive_recover(const char *damaged, const char *path, recover_report_
 {
 	struct scan *scan = calloc(1, sizeof *scan);
 	struct archive_writer *writer = NULL;
-	struct recovery recovery = { 0 };
+	struct recovery recovery = {0};
 	bool any = false;
 	bp_status status;
 	if (!scan)

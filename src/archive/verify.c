@@ -17,9 +17,9 @@ struct walk {
 	void *user;
 	bp_error *first; /* of the caller; may be NULL */
 	bp_status status;
-	bool ended;             /* the caller has seen enough */
-	uint64_t next_ordinal;  /* that the next leaf should begin with */
-	uint64_t next_offset;   /* where the next record should begin; 0 after damage: unknown */
+	bool ended;            /* the caller has seen enough */
+	uint64_t next_ordinal; /* that the next leaf should begin with */
+	uint64_t next_offset;  /* where the next record should begin; 0 after damage: unknown */
 	uint64_t pages_seen;
 	uint32_t last_name_bytes;
 	char last_name[BP_NAME_BYTES_MAX + 1];
@@ -27,7 +27,7 @@ struct walk {
 
 static void problem_report(struct walk *walk, const char *material, const bp_error *error)
 {
-	bp_problem problem = { .material = material, .error = *error };
+	bp_problem problem = {.material = material, .error = *error};
 	if (walk->ended)
 		return;
 	if (!walk->status) {
@@ -49,7 +49,8 @@ static bp_status layer_check(const struct bp_archive *archive, const struct inde
 		status = model_expand(model, 0, table, error);
 	model_free(model);
 	if (!status && !(table->unit > 0 && isfinite(table->unit)))
-		status = error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: the unit of its values is %g", layers - 1, table->unit);
+		status =
+			error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: the unit of its values is %g", layers - 1, table->unit);
 	for (int c = 0; !status && c < 3; c++)
 		for (size_t i = 0; i < cells; i++)
 			if (!(table->rgb[c][i] >= 0 && isfinite(table->rgb[c][i]))) {
@@ -63,7 +64,7 @@ static bp_status layer_check(const struct bp_archive *archive, const struct inde
 static bp_status layers_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                               bp_error *error)
 {
-	struct expansion table = { 0 };
+	struct expansion table = {0};
 	bp_status status = expansion_alloc(head->dims, &table, error);
 	for (uint32_t l = 1; !status && l <= head->layer_count; l++)
 		status = layer_check(archive, entry, head, l, &table, error);
@@ -75,7 +76,7 @@ static void record_check(struct walk *walk, const struct index_entry *entry)
 {
 	struct record_head head;
 	uint8_t *record = NULL;
-	bp_error error = { 0 };
+	bp_error error = {0};
 	if (walk->next_offset && entry->offset != walk->next_offset) {
 		error_set(&error, BP_ERROR_CORRUPT, walk->next_offset, "a record should begin here, the index has it at %llu",
 		          (unsigned long long)entry->offset);
@@ -96,7 +97,7 @@ static void record_check(struct walk *walk, const struct index_entry *entry)
 static void leaf_check(struct walk *walk, const struct index_page *leaf)
 {
 	uint64_t page_offset = archive_header(walk->archive)->index_offset + (uint64_t)leaf->number * PAGE_BYTES;
-	struct index_entry entry = { 0 };
+	struct index_entry entry = {0};
 	bp_error error;
 	uint32_t bytes;
 	const char *name = index_entry_name(leaf, 0, &bytes);
@@ -166,7 +167,7 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
 {
 	const struct archive_header *header;
 	struct archive_header again;
-	struct walk walk = { .archive = archive, .flags = flags, .report = report, .user = user, .first = error };
+	struct walk walk = {.archive = archive, .flags = flags, .report = report, .user = user, .first = error};
 	uint8_t bytes[ARCHIVE_HEADER_BYTES];
 	bp_error problem;
 
@@ -178,7 +179,7 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
 	    archive_header_parse(bytes, sizeof bytes, header->file_bytes, &again, &problem) != BP_OK)
 		problem_report(&walk, NULL, &problem);
 	if (header->page_count && !walk.ended) {
-		struct page_expect root = { .number = header->page_count - 1, .level = header->depth - 1 };
+		struct page_expect root = {.number = header->page_count - 1, .level = header->depth - 1};
 		page_walk(&walk, &root, header->count);
 	}
 	if (!walk.ended)

@@ -16,7 +16,7 @@ enum { BUFFER_BYTES = 1 << 18 };
 
 struct archive_writer {
 	struct output_file file;
-	bool in_memory;            /* then the bytes go to: */
+	bool in_memory; /* then the bytes go to: */
 	struct byte_buffer memory;
 	struct index_builder index;
 	uint64_t file_bytes; /* written so far, the buffer included */
@@ -87,10 +87,7 @@ bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_
 	return writer_open(path ? path : "", out, error);
 }
 
-bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error)
-{
-	return writer_open(NULL, out, error);
-}
+bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error) { return writer_open(NULL, out, error); }
 
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
 {
@@ -101,8 +98,7 @@ bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *recor
 	if (head.record_bytes != record_bytes)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: a record of %u bytes was given as %zu", head.name,
 		                 head.record_bytes, record_bytes);
-	if (writer->last_name[0] &&
-	    name_compare(writer->last_name, strlen(writer->last_name), head.name, strlen(head.name)) >= 0)
+	if (writer->last_name[0] && name_compare(writer->last_name, strlen(writer->last_name), head.name, strlen(head.name)) >= 0)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: comes after %s, names must ascend", head.name,
 		                 writer->last_name);
 	memcpy(writer->last_name, head.name, sizeof head.name);
@@ -132,7 +128,10 @@ static bp_status header_put(struct archive_writer *writer, const struct archive_
 static bp_status writer_end(struct archive_writer *writer, bp_error *error)
 {
 	struct archive_header header = {
-		.major = ARCHIVE_MAJOR, .minor = ARCHIVE_MINOR, .count = writer->index.count, .index_offset = writer->file_bytes,
+		.major = ARCHIVE_MAJOR,
+		.minor = ARCHIVE_MINOR,
+		.count = writer->index.count,
+		.index_offset = writer->file_bytes,
 	};
 	bp_status status = index_write(&writer->index, page_append, writer, &header.page_count, &header.depth, error);
 	if (!status)

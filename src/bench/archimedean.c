@@ -64,8 +64,8 @@ static double turn(const struct archimedean_channel *channel, int axis, double f
 	return channel->turned >> axis & 1 ? 1 - f : f;
 }
 
-double archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct copula_edge *room,
-                         const struct copula_edge *out[3])
+double archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha,
+                         struct copula_edge *room, const struct copula_edge *out[3])
 {
 	double sign = 1;
 
@@ -86,19 +86,13 @@ static size_t archimedean_parameters(const void *opaque)
 	return 3 * ((size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3);
 }
 
-static size_t archimedean_bytes(const void *state)
-{
-	return archimedean_parameters(state) * sizeof(float) + 3;
-}
+static size_t archimedean_bytes(const void *state) { return archimedean_parameters(state) * sizeof(float) + 3; }
 
-static double finite_or_zero(double x)
-{
-	return isfinite(x) ? x : 0;
-}
+static double finite_or_zero(double x) { return isfinite(x) ? x : 0; }
 
 /* C at all corners of one edge of theta_h: D + 1 rows of P + 1. */
-static void corners_fill(struct lattice_dims dims, const struct copula *copula, const struct copula_edge *const edges[3], uint32_t i,
-                         double *out)
+static void corners_fill(struct lattice_dims dims, const struct copula *copula, const struct copula_edge *const edges[3],
+                         uint32_t i, double *out)
 {
 	for (uint32_t j = 0; j <= dims.theta_d; j++)
 		for (uint32_t k = 0; k <= dims.phi_d; k++)
@@ -106,8 +100,8 @@ static void corners_fill(struct lattice_dims dims, const struct copula *copula, 
 }
 
 /* Cells share corners, so the eight of each are looked up in the two layers around it: low and high. */
-static void channel_expand(struct lattice_dims dims, const struct archimedean_channel *channel, struct copula_edge *room, double *low,
-                           double *high, float *out)
+static void channel_expand(struct lattice_dims dims, const struct archimedean_channel *channel, struct copula_edge *room,
+                           double *low, double *high, float *out)
 {
 	const struct copula copula = copula_make(channel->family, (double)channel->alpha);
 	const struct copula_edge *edges[3];

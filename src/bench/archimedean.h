@@ -55,8 +55,8 @@ void archimedean_free(void *state); /* NULL is allowed */
  * ARCHIMEDEAN_EDGES_MAX. Returns the sign that a cell's mass between them has: -1 where an odd number of axes is turned.
  */
 enum { ARCHIMEDEAN_EDGES_MAX = 3 * (LATTICE_EXTENT_MAX + 1) };
-double archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha, struct copula_edge *room,
-                         const struct copula_edge *out[3]);
+double archimedean_edges(struct lattice_dims dims, const struct archimedean_channel *channel, double alpha,
+                         struct copula_edge *room, const struct copula_edge *out[3]);
 
 /* The baseline's fit (archimedean_fit.c). */
 bp_status archimedean_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error);

@@ -22,9 +22,9 @@ static const double ALPHA_FIRST = 0.05, ALPHA_LAST = 25, PART_LAST = 0.98;
 
 /* Of the channel's table with its holes filled. */
 struct axis_means {
-	double mean;                             /* 1/sr */
-	double least;                            /* the smallest of the values below: the offset can be no more */
-	double value[3][LATTICE_EXTENT_MAX];     /* over the other two axes, divided by the mean */
+	double mean;                         /* 1/sr */
+	double least;                        /* the smallest of the values below: the offset can be no more */
+	double value[3][LATTICE_EXTENT_MAX]; /* over the other two axes, divided by the mean */
 };
 
 static void axis_means_take(struct lattice_dims dims, const double *plane, const uint32_t *source, struct axis_means *out)
@@ -53,7 +53,8 @@ static void axis_means_take(struct lattice_dims dims, const double *plane, const
 }
 
 /* The marginals of what is left when `offset` (in units of the mean, below 1) is taken off the table. */
-static void marginals_set(struct lattice_dims dims, const struct axis_means *means, double offset, struct archimedean_channel *out)
+static void marginals_set(struct lattice_dims dims, const struct axis_means *means, double offset,
+                          struct archimedean_channel *out)
 {
 	for (int axis = 0; axis < 3; axis++)
 		for (uint32_t n = 0; n < archimedean_extent(dims, axis); n++)
@@ -66,9 +67,9 @@ struct search {
 	const double *rgb;
 	struct lattice_dims dims;
 	const struct axis_means *means;
-	struct archimedean_channel *channel;            /* family, turns, marginals */
-	size_t every;                                   /* of the sample's cells */
-	double diffuse, scale;                          /* of the last evaluation, in the sample's unit */
+	struct archimedean_channel *channel;             /* family, turns, marginals */
+	size_t every;                                    /* of the sample's cells */
+	double diffuse, scale;                           /* of the last evaluation, in the sample's unit */
 	struct copula_edge edges[ARCHIMEDEAN_EDGES_MAX]; /* scratch */
 };
 
@@ -84,7 +85,8 @@ static double objective(double log_alpha, void *user)
 	const struct copula copula = copula_make(channel->family, alpha);
 	double one = 0, y1 = 0, yy = 0, yg = 0, g1 = 0, gg = 0;
 
-	const double cells = archimedean_edges(search->dims, channel, alpha, search->edges, edges) * (double)lattice_cells(search->dims);
+	const double cells =
+		archimedean_edges(search->dims, channel, alpha, search->edges, edges) * (double)lattice_cells(search->dims);
 	for (size_t n = 0; n < s->count; n += search->every) {
 		uint32_t k = s->cell[n] % P, j = s->cell[n] / P % D, i = s->cell[n] / P / D;
 		double g = fmax(0, cells * copula_cell_mass(&copula, edges[0] + i, edges[1] + j, edges[2] + k));
@@ -140,10 +142,7 @@ struct candidate {
 };
 
 /* 0 to just below the least mean, where a marginal would be 0 somewhere. */
-static double offset_of(const struct axis_means *means, double x)
-{
-	return 0.999 * means->least * (x * x / (1 + x * x));
-}
+static double offset_of(const struct axis_means *means, double x) { return 0.999 * means->least * (x * x / (1 + x * x)); }
 
 static void candidate_apply(struct search *search, const struct candidate *candidate)
 {

@@ -28,7 +28,8 @@ struct baseline {
 	/* *state is for expand, evaluate, ... and is released with free_state. */
 	bp_status (*fit)(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error);
 	/* The same with an effort of 1 to 9; NULL: it knows of no effort. */
-	bp_status (*fit_effort)(const struct bench_material *material, size_t budget_bytes, int effort, void **state, bp_error *error);
+	bp_status (*fit_effort)(const struct bench_material *material, size_t budget_bytes, int effort, void **state,
+	                        bp_error *error);
 	size_t (*bytes)(const void *state);
 	size_t (*parameters)(const void *state); /* numbers stored; 0 where the state is a codec's bytes */
 

@@ -43,7 +43,8 @@ static bp_status cook_torrance_fit(const struct bench_material *material, size_t
 	return lobe_fit(&LOBE_COOK_TORRANCE, material->lattice, LOBE_COSINE, state, error);
 }
 
-static bp_status cook_torrance_fit_relative(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+static bp_status cook_torrance_fit_relative(const struct bench_material *material, size_t budget_bytes, void **state,
+                                            bp_error *error)
 {
 	(void)budget_bytes;
 	return lobe_fit(&LOBE_COOK_TORRANCE, material->lattice, LOBE_RELATIVE, state, error);

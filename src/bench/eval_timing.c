@@ -13,31 +13,16 @@
 
 static double sink; /* results go here, so that no loop is optimised away */
 
-static void note(struct series *all, enum figure figure, double seconds)
-{
-	all[figure].value[all[figure].count++] = seconds;
-}
+static void note(struct series *all, enum figure figure, double seconds) { all[figure].value[all[figure].count++] = seconds; }
 
-static double cpu(void)
-{
-	return clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-}
+static double cpu(void) { return clock_seconds(CLOCK_THREAD_CPUTIME_ID); }
 
-static double wall(void)
-{
-	return clock_seconds(CLOCK_MONOTONIC);
-}
+static double wall(void) { return clock_seconds(CLOCK_MONOTONIC); }
 
 /* Evaluation n is of the directions first(n) and second(n), whole batches of them beside each other. */
-static int first(int n)
-{
-	return n % DIRECTIONS;
-}
+static int first(int n) { return n % DIRECTIONS; }
 
-static int second(int n)
-{
-	return (n + n / DIRECTIONS * (DIRECTIONS / PARTNERS)) % DIRECTIONS;
-}
+static int second(int n) { return (n + n / DIRECTIONS * (DIRECTIONS / PARTNERS)) % DIRECTIONS; }
 
 void directions_make(struct directions *d)
 {
@@ -91,7 +76,8 @@ static bool reads_time(const char *path, struct series *all)
 	return read;
 }
 
-bp_material *eval_load(const bp_archive *archive, uint64_t index, bp_form form, int sampling, double max_log_rmse, double *seconds)
+bp_material *eval_load(const bp_archive *archive, uint64_t index, bp_form form, int sampling, double max_log_rmse,
+                       double *seconds)
 {
 	bp_load_options options = {.struct_bytes = sizeof options, .form = form, .sampling = sampling, .max_log_rmse = max_log_rmse};
 	bp_material *material = NULL;
@@ -135,11 +121,13 @@ static void raw_libm(const struct lattice *raw, const struct directions *d)
 		double h[3] = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]}, length = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
 		for (int c = 0; c < 3; c++)
 			h[c] /= length;
-		double theta_h = acos(fmin(1, h[2])), phi_h = atan2(h[1], h[0]), theta_d = acos(fmin(1, h[0] * wi[0] + h[1] * wi[1] + h[2] * wi[2]));
+		double theta_h = acos(fmin(1, h[2])), phi_h = atan2(h[1], h[0]),
+			   theta_d = acos(fmin(1, h[0] * wi[0] + h[1] * wi[1] + h[2] * wi[2]));
 		double x = cos(phi_h) * wi[0] + sin(phi_h) * wi[1], y = -sin(phi_h) * wi[0] + cos(phi_h) * wi[1];
 		double phi_d = atan2(y, cos(theta_h) * x - sin(theta_h) * wi[2]);
 		phi_d = phi_d < 0 ? phi_d + M_PI : phi_d;
-		uint32_t i = (uint32_t)(sqrt(theta_h / M_PI_2) * 90), j = (uint32_t)(theta_d / M_PI_2 * 90), k = (uint32_t)(phi_d / M_PI * 180);
+		uint32_t i = (uint32_t)(sqrt(theta_h / M_PI_2) * 90), j = (uint32_t)(theta_d / M_PI_2 * 90),
+				 k = (uint32_t)(phi_d / M_PI * 180);
 		size_t cell = lattice_index(LATTICE_MERL, i < 89 ? i : 89, j < 89 ? j : 89, k < 179 ? k : 179);
 		sink += raw->rgb[0][cell] + raw->rgb[1][cell] + raw->rgb[2][cell];
 	}
@@ -208,16 +196,16 @@ static void densities(const bp_material *material, const struct directions *d)
 		sink += (double)bp_material_pdf(material, d->wi[first(n)], d->wo[second(n)]);
 }
 
-#define TIMED(figure, work)                                               \
-	do {                                                                  \
-		work; /* to warm up */                                            \
-		double start = cpu();                                             \
-		work;                                                             \
-		note(all, figure, (cpu() - start) / EVALUATIONS);                 \
+#define TIMED(figure, work) \
+	do { \
+		work; /* to warm up */ \
+		double start = cpu(); \
+		work; \
+		note(all, figure, (cpu() - start) / EVALUATIONS); \
 	} while (0)
 
-static bool evaluations_time(const struct lattice *raw, const bp_material *expanded, const bp_material *compact, struct directions *d,
-                             struct series *all)
+static bool evaluations_time(const struct lattice *raw, const bp_material *expanded, const bp_material *compact,
+                             struct directions *d, struct series *all)
 {
 	TIMED(RAW_LIBM, raw_libm(raw, d));
 	TIMED(RAW_OURS, raw_ours(raw, d));
@@ -233,7 +221,8 @@ static bool evaluations_time(const struct lattice *raw, const bp_material *expan
 	return hold;
 }
 
-bool eval_time(const bp_archive *archive, uint64_t index, const char *path, struct directions *d, struct series all[FIGURES], size_t memory[2])
+bool eval_time(const bp_archive *archive, uint64_t index, const char *path, struct directions *d, struct series all[FIGURES],
+               size_t memory[2])
 {
 	bp_material_info info = {.struct_bytes = sizeof info};
 	bp_loaded loaded = {.struct_bytes = sizeof loaded};
@@ -245,7 +234,8 @@ bool eval_time(const bp_archive *archive, uint64_t index, const char *path, stru
 		fprintf(stderr, "brdfpack-bench-eval: %s: %s\n", path, error.message);
 		return false;
 	}
-	bp_material *expanded = eval_load(archive, index, BP_FORM_EXPANDED, 1, 0, &seconds), *compact = eval_load(archive, index, BP_FORM_COMPACT, 1, 0, &seconds);
+	bp_material *expanded = eval_load(archive, index, BP_FORM_EXPANDED, 1, 0, &seconds),
+				*compact = eval_load(archive, index, BP_FORM_COMPACT, 1, 0, &seconds);
 	good = expanded && compact;
 	for (int form = 0; form < 2 && good; form++) {
 		bp_material_loaded(form ? compact : expanded, &loaded, NULL);

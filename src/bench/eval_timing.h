@@ -16,8 +16,20 @@
 enum { ROUNDS = 7, DIRECTIONS = 1 << 14, PARTNERS = 8, EVALUATIONS = PARTNERS * DIRECTIONS, BATCH = 1024, MOST = MATERIALS_MAX };
 
 enum figure {
-	READ_CACHED, READ_COLD, LOAD_EXPANDED, LOAD_COMPACT, LOAD_PREVIEW,
-	RAW_LIBM, RAW_OURS, ONE_EXPANDED, ONE_COMPACT, BATCH_EXPANDED, BATCH_COMPACT, DRAW, DENSITY, FIGURES
+	READ_CACHED,
+	READ_COLD,
+	LOAD_EXPANDED,
+	LOAD_COMPACT,
+	LOAD_PREVIEW,
+	RAW_LIBM,
+	RAW_OURS,
+	ONE_EXPANDED,
+	ONE_COMPACT,
+	BATCH_EXPANDED,
+	BATCH_COMPACT,
+	DRAW,
+	DENSITY,
+	FIGURES
 };
 
 /* The measurements of one figure, over all rounds and materials, in seconds. */
@@ -36,14 +48,15 @@ struct directions {
 void directions_make(struct directions *directions);
 
 /* Loads a material; max_log_rmse and sampling as in bp_load_options. NULL, with a complaint, where it cannot be. */
-bp_material *eval_load(const bp_archive *archive, uint64_t index, bp_form form, int sampling, double max_log_rmse, double *seconds);
+bp_material *eval_load(const bp_archive *archive, uint64_t index, bp_form form, int sampling, double max_log_rmse,
+                       double *seconds);
 
 /*
  * Adds ROUNDS measurements of material `index` to every figure; its MERL file is at `path`. memory: bytes of the expanded and the
  * compact form with sampling. False, with a complaint, where something cannot be read or values do not hold.
  */
-bool eval_time(const bp_archive *archive, uint64_t index, const char *path, struct directions *directions, struct series all[FIGURES],
-               size_t memory[2]);
+bool eval_time(const bp_archive *archive, uint64_t index, const char *path, struct directions *directions,
+               struct series all[FIGURES], size_t memory[2]);
 
 /* A Markdown table of the medians, their ratios to the yardsticks and what the project asks for. Reorders the series. */
 void eval_table_print(struct series all[FIGURES], const size_t memory[2]);

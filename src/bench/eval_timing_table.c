@@ -14,7 +14,8 @@ static const struct {
 } ROWS[FIGURES] = {
 	[READ_CACHED] = {"read the raw file, from the page cache", "ms", NULL, 0, 1e3, ""},
 	[READ_COLD] = {"read the raw file, from storage", "ms", NULL, 0, 1e3, ""},
-	[LOAD_EXPANDED] = {"load, all layers, expanded", "ms", "cached read", READ_CACHED, 1e3, "2.0, and below the read from storage"},
+	[LOAD_EXPANDED] = {"load, all layers, expanded", "ms", "cached read", READ_CACHED, 1e3,
+                       "2.0, and below the read from storage"},
 	[LOAD_COMPACT] = {"load, all layers, compact", "ms", "cached read", READ_CACHED, 1e3, "the same"},
 	[LOAD_PREVIEW] = {"load, first layer, preview", "ms", "all layers", LOAD_EXPANDED, 1e3, "0.2, 3 ms"},
 	[RAW_LIBM] = {"nearest look-up in the raw table, acos and atan2", "ns", NULL, 0, 1e9, ""},
@@ -41,7 +42,8 @@ static double median(struct series *series)
 
 static void memory_print(const char *what, size_t bytes, const char *asked)
 {
-	printf("| %s | %.2f MB | raw table | %.2f | %s |\n", what, (double)bytes / 1e6, (double)bytes / (double)merl_file_bytes(LATTICE_MERL), asked);
+	printf("| %s | %.2f MB | raw table | %.2f | %s |\n", what, (double)bytes / 1e6,
+	       (double)bytes / (double)merl_file_bytes(LATTICE_MERL), asked);
 }
 
 void eval_table_print(struct series all[FIGURES], const size_t memory[2])

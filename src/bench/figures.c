@@ -18,7 +18,8 @@ void figure_plans_free(struct figure_plans *plans)
 		sphere_plan_free(plans->plan[l]);
 }
 
-static bp_status render(const struct figure_plans *plans, const struct lookup_table *table, struct sphere_image *images, bp_error *error)
+static bp_status render(const struct figure_plans *plans, const struct lookup_table *table, struct sphere_image *images,
+                        bp_error *error)
 {
 	bp_status status;
 

@@ -58,15 +58,9 @@ bool inputs_add(struct inputs *inputs, const char *path)
 	return good;
 }
 
-static int by_name(const void *a, const void *b)
-{
-	return strcmp(*(char *const *)a, *(char *const *)b);
-}
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
-void inputs_sort(struct inputs *inputs)
-{
-	qsort(inputs->paths, (size_t)inputs->count, sizeof *inputs->paths, by_name);
-}
+void inputs_sort(struct inputs *inputs) { qsort(inputs->paths, (size_t)inputs->count, sizeof *inputs->paths, by_name); }
 
 bool inputs_keep_listed(struct inputs *inputs, const char *list)
 {

@@ -134,7 +134,8 @@ static void search_grid(struct search *search, struct start *kept)
 	}
 }
 
-bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective kind, void **state, bp_error *error)
+bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective kind, void **state,
+                   bp_error *error)
 {
 	const uint32_t stride_d = (lattice->dims.theta_d + SAMPLES_D - 1) / SAMPLES_D;
 	const uint32_t stride_p = (lattice->dims.phi_d + SAMPLES_P - 1) / SAMPLES_P;
@@ -153,7 +154,8 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 		goto out;
 	if ((status = lobe_sample_take(lattice, THIN * stride_d, THIN * stride_p, &thin, NULL)))
 		thin = (struct lobe_sample){0}; /* so few valid cells: the dense sample serves for both */
-	if (kind == LOBE_RELATIVE && ((status = lobe_sample_make_relative(&dense, error)) || (thin.count && (status = lobe_sample_make_relative(&thin, error)))))
+	if (kind == LOBE_RELATIVE && ((status = lobe_sample_make_relative(&dense, error)) ||
+	                              (thin.count && (status = lobe_sample_make_relative(&thin, error)))))
 		goto out;
 	search.lobe = malloc(dense.count * sizeof *search.lobe);
 	if (!search.lobe) {
@@ -197,15 +199,9 @@ out:
 	return status;
 }
 
-size_t lobe_parameters(const void *state)
-{
-	return 6 + (size_t)((const struct lobe_state *)state)->model->shape_count;
-}
+size_t lobe_parameters(const void *state) { return 6 + (size_t)((const struct lobe_state *)state)->model->shape_count; }
 
-size_t lobe_bytes(const void *state)
-{
-	return lobe_parameters(state) * sizeof(float);
-}
+size_t lobe_bytes(const void *state) { return lobe_parameters(state) * sizeof(float); }
 
 static double lobe_at(const struct lobe_state *state, struct cell_angles a)
 {

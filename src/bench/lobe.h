@@ -57,7 +57,8 @@ struct lobe_state {
  */
 enum lobe_objective { LOBE_COSINE, LOBE_RELATIVE };
 
-bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective objective, void **state, bp_error *error);
+bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective objective, void **state,
+                   bp_error *error);
 size_t lobe_bytes(const void *state);
 size_t lobe_parameters(const void *state);
 bp_status lobe_expand(const void *state, struct expansion *out, bp_error *error);

@@ -57,8 +57,8 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 					continue;
 				sample.angles[n] = a;
 				sample.cell[n] = (uint32_t)cell;
-				sample.weight[n] = measure_h(i, dims.theta_h) * measure_d(j, dims.theta_d) * 0.5 *
-				                   (a.cos_i * a.cos_i + a.cos_o * a.cos_o);
+				sample.weight[n] =
+					measure_h(i, dims.theta_h) * measure_d(j, dims.theta_d) * 0.5 * (a.cos_i * a.cos_i + a.cos_o * a.cos_o);
 				weight_sum += sample.weight[n];
 				for (int c = 0; c < 3; c++) {
 					sample.rgb[c][n] = lattice->rgb[c][cell];

@@ -9,11 +9,11 @@
 struct lobe_sample {
 	size_t count;
 	struct cell_angles *angles;
-	uint32_t *cell; /* index in the lattice */
-	double *weight; /* w cos^2; the sum is 1 */
+	uint32_t *cell;   /* index in the lattice */
+	double *weight;   /* w cos^2; the sum is 1 */
 	double *relative; /* of each channel, [3][count]: weight / (b + 0.001/sr)^2, or NULL: every channel has `weight` */
-	double *rgb[3]; /* in units of `unit` */
-	double unit;    /* largest sampled value, 1/sr; 1 if all are 0 */
+	double *rgb[3];   /* in units of `unit` */
+	double unit;      /* largest sampled value, 1/sr; 1 if all are 0 */
 };
 
 /* Every theta_h, every stride_d-th theta_d and every stride_p-th phi_d, valid, both angles at most 80 degrees. */

@@ -80,7 +80,4 @@ void log_tensor_free(struct log_tensor *tensor)
 		free(tensor->plane[0]);
 }
 
-float log_tensor_value(float x)
-{
-	return fmaxf(0, expf(fminf(50, fmaxf(-50, x))) - (float)LOG_OFFSET);
-}
+float log_tensor_value(float x) { return fmaxf(0, expf(fminf(50, fmaxf(-50, x))) - (float)LOG_OFFSET); }

@@ -30,10 +30,7 @@ struct lossless_state {
 	uint8_t *stream;
 };
 
-static size_t zlib_bound(size_t bytes)
-{
-	return compressBound(bytes);
-}
+static size_t zlib_bound(size_t bytes) { return compressBound(bytes); }
 
 static size_t zlib_compress(const uint8_t *in, size_t bytes, uint8_t *out, size_t capacity)
 {
@@ -151,10 +148,7 @@ static bp_status xz_fit(const struct bench_material *material, size_t budget_byt
 	return fit_with(&XZ, material, state, error);
 }
 
-static size_t lossless_bytes(const void *state)
-{
-	return ((const struct lossless_state *)state)->bytes;
-}
+static size_t lossless_bytes(const void *state) { return ((const struct lossless_state *)state)->bytes; }
 
 static size_t lossless_parameters(const void *state)
 {
@@ -189,8 +183,10 @@ out:
 }
 
 #define LOSSLESS(codec_name, text, codec_fit) \
-	{.name = codec_name, .reference = text, .fit = codec_fit, .bytes = lossless_bytes, .parameters = lossless_parameters, \
-	 .expand = lossless_expand, .free_state = lossless_free}
+	{ \
+		.name = codec_name, .reference = text, .fit = codec_fit, .bytes = lossless_bytes, .parameters = lossless_parameters, \
+		.expand = lossless_expand, .free_state = lossless_free \
+	}
 
 const struct baseline BASELINE_ZLIB = LOSSLESS("zlib", "zlib " ZLIB_VERSION ", level 6, lossless", zlib_fit);
 const struct baseline BASELINE_ZSTD = LOSSLESS("zstd", "zstd " ZSTD_VERSION_STRING ", level 9, lossless", zstd_fit);

@@ -23,12 +23,16 @@ static void print_head(FILE *out, const struct run *run, const char *label, int 
 	fprintf(out, "# data: %s; %d materials\n", label, run->inputs.count);
 	if (run->truth)
 		fprintf(out, "# figures against: the tables of the same names in %s\n", run->truth);
-	fprintf(out, "# processes: %d; fit, decode: processor seconds; evaluate: median of %d passes over %d random pairs; cat: wall-clock seconds\n",
+	fprintf(out,
+	        "# processes: %d; fit, decode: processor seconds; evaluate: median of %d passes over %d random pairs; cat: "
+	        "wall-clock seconds\n",
 	        workers, REPEATS, PAIRS);
-	fprintf(out, "# evaluated: model = straight from what is stored; table = after decoding the whole, nearest look-up (paper, default: interpolated, as a renderer reads them)\n");
+	fprintf(out, "# evaluated: model = straight from what is stored; table = after decoding the whole, nearest look-up (paper, "
+	             "default: interpolated, as a renderer reads them)\n");
 	for (int m = 0; m < METHOD_FITS; m++)
 		if (run->method_on[m])
-			fprintf(out, "# %s: %s%s\n", METHODS[m].name, METHODS[m].baseline->reference, METHODS[m].efforts ? ", by effort" : "");
+			fprintf(out, "# %s: %s%s\n", METHODS[m].name, METHODS[m].baseline->reference,
+			        METHODS[m].efforts ? ", by effort" : "");
 }
 
 static void print_rows(FILE *out, const struct run *run, const struct row *rows, int count)
@@ -70,8 +74,8 @@ static int choose_numbers(const char *list, char option, double least, double mo
 	for (const char *at = list; *at; at = *end == ',' ? end + 1 : end) {
 		double number = strtod(at, &end);
 		if (end == at || (*end && *end != ',') || !(number >= least && number <= most) || count == LADDER_MAX) {
-			fprintf(stderr, "brdfpack-bench: -%c wants up to %d numbers from %g to %g with commas between them, not `%s`\n", option,
-			        LADDER_MAX, least, most, list);
+			fprintf(stderr, "brdfpack-bench: -%c wants up to %d numbers from %g to %g with commas between them, not `%s`\n",
+			        option, LADDER_MAX, least, most, list);
 			exit(2);
 		}
 		out[count++] = number;
@@ -81,18 +85,17 @@ static int choose_numbers(const char *list, char option, double least, double mo
 
 static void usage(FILE *out)
 {
-	fprintf(out,
-	        "Usage: brdfpack-bench [options] FOLDER-OR-MERL-FILE...\n"
-	        "Run time against error of every method; a table of tab-separated values.\n"
-	        "  -o FILE   where the table goes (standard output)\n"
-	        "  -l TEXT   what the data are, for the table's head\n"
-	        "  -n FILE   only the materials named there, one per line\n"
-	        "  -m LIST   only these methods, with commas: paper,spectral,ward,...\n"
-	        "  -b LIST   budgets in bytes, with commas (4000,8000,16000,30000,60400,120000)\n"
-	        "  -e LIST   efforts of the spectral profile at 60400 bytes, with commas (1,2,...,9)\n"
-	        "  -t FOLDER figures against the tables of the same names there, not against the inputs\n"
-	        "  -q        quick: three materials, spread over the list, three efforts; every fit once\n"
-	        "  -j N      processes (1: times are least disturbed)\n");
+	fprintf(out, "Usage: brdfpack-bench [options] FOLDER-OR-MERL-FILE...\n"
+	             "Run time against error of every method; a table of tab-separated values.\n"
+	             "  -o FILE   where the table goes (standard output)\n"
+	             "  -l TEXT   what the data are, for the table's head\n"
+	             "  -n FILE   only the materials named there, one per line\n"
+	             "  -m LIST   only these methods, with commas: paper,spectral,ward,...\n"
+	             "  -b LIST   budgets in bytes, with commas (4000,8000,16000,30000,60400,120000)\n"
+	             "  -e LIST   efforts of the spectral profile at 60400 bytes, with commas (1,2,...,9)\n"
+	             "  -t FOLDER figures against the tables of the same names there, not against the inputs\n"
+	             "  -q        quick: three materials, spread over the list, three efforts; every fit once\n"
+	             "  -j N      processes (1: times are least disturbed)\n");
 }
 
 int main(int argc, char **argv)
@@ -135,7 +138,8 @@ int main(int argc, char **argv)
 	if (run.quick)
 		inputs_thin(&run.inputs, QUICK_MATERIALS);
 	if (!run.inputs.count || workers < 1 || workers > RUN_WORKERS_MAX) {
-		fprintf(stderr, run.inputs.count ? "brdfpack-bench: -j wants 1 to 64\n" : "brdfpack-bench: no MERL file (*.binary) found\n");
+		fprintf(stderr,
+		        run.inputs.count ? "brdfpack-bench: -j wants 1 to 64\n" : "brdfpack-bench: no MERL file (*.binary) found\n");
 		usage(stderr);
 		return 2;
 	}

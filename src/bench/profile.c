@@ -43,7 +43,8 @@ static bp_status fit_profile(enum profile profile, const struct bench_material *
 
 	if (!state)
 		return error_memory(error, sizeof *state);
-	status = record_encode(material->lattice, material->name, &source, &options, &state->record, &state->bytes, &state->head, error);
+	status =
+		record_encode(material->lattice, material->name, &source, &options, &state->record, &state->bytes, &state->head, error);
 	if (status)
 		profile_free(state);
 	else
@@ -61,15 +62,13 @@ static bp_status spectral_fit(const struct bench_material *material, size_t budg
 	return fit_profile(PROFILE_SPECTRAL, material, budget_bytes, EFFORT_USUAL, state, error);
 }
 
-static bp_status spectral_fit_effort(const struct bench_material *material, size_t budget_bytes, int effort, void **state, bp_error *error)
+static bp_status spectral_fit_effort(const struct bench_material *material, size_t budget_bytes, int effort, void **state,
+                                     bp_error *error)
 {
 	return fit_profile(PROFILE_SPECTRAL, material, budget_bytes, effort, state, error);
 }
 
-static size_t profile_bytes(const void *state)
-{
-	return ((const struct profile_state *)state)->bytes;
-}
+static size_t profile_bytes(const void *state) { return ((const struct profile_state *)state)->bytes; }
 
 static size_t profile_parameters(const void *state)
 {
@@ -111,9 +110,9 @@ static void profile_evaluate(const void *opaque, const double wi[3], const doubl
 }
 
 /* What both profiles have in common. */
-#define PROFILE_BASELINE                                                                                                              \
-	.budgeted = true, .bytes = profile_bytes, .parameters = profile_parameters, .expand = profile_expand, .prepare = profile_prepare, \
-	.evaluate = profile_evaluate, .free_state = profile_free
+#define PROFILE_BASELINE \
+	.budgeted = true, .bytes = profile_bytes, .parameters = profile_parameters, .expand = profile_expand, \
+	.prepare = profile_prepare, .evaluate = profile_evaluate, .free_state = profile_free
 
 const struct baseline BASELINE_PAPER = {
 	.name = "paper",

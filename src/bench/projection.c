@@ -20,7 +20,8 @@ static bp_status leading_eigenvectors(double *gram, size_t extent, size_t rank, 
 	info = LAPACKE_dsyevd(LAPACK_ROW_MAJOR, 'V', 'U', (lapack_int)extent, gram, (lapack_int)extent, values);
 	free(values);
 	if (info)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "eigenvalues of an unfolding: LAPACK dsyevd returned %d", (int)info);
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "eigenvalues of an unfolding: LAPACK dsyevd returned %d",
+		                 (int)info);
 	for (size_t n = 0; n < extent; n++)
 		for (size_t r = 0; r < rank; r++)
 			basis[n * rank + r] = gram[n * extent + extent - 1 - r];

@@ -65,7 +65,8 @@ static void ggx_draw(double alpha, const float wo[3], double u1, double u2, floa
 		wi[c] = (float)(dot * h[c] / n - (double)wo[c]);
 }
 
-struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixture, double theta_o, int samples, unsigned long long *u)
+struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixture, double theta_o, int samples,
+                            unsigned long long *u)
 {
 	struct sums sums = {.count = samples};
 	float wo[3], wi[3];

@@ -19,7 +19,8 @@ struct spread {
 };
 
 /* `u` is the state of a generator of uniform numbers, not 0. */
-struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixture, double theta_o, int samples, unsigned long long *u);
+struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixture, double theta_o, int samples,
+                            unsigned long long *u);
 struct spread spread_of_material(const bp_material *material, double theta_o, int samples, unsigned long long *u);
 
 /* The mixture with the smallest mean square deviation over the angles. */

@@ -29,16 +29,10 @@ static const struct column COLUMNS[] = {
 	{"largest_relative", "%.4g", AT(figures.fidelity.largest_relative)},
 };
 /* What 0 means that there is none of. */
-static bool zero_is_absent(size_t offset)
-{
-	return offset == AT(budget) || offset == AT(effort) || offset == AT(parameters);
-}
+static bool zero_is_absent(size_t offset) { return offset == AT(budget) || offset == AT(effort) || offset == AT(parameters); }
 enum { COLUMN_COUNT = sizeof COLUMNS / sizeof *COLUMNS };
 
-static double *cell(struct row *row, int column)
-{
-	return (double *)(void *)((char *)row + COLUMNS[column].offset);
-}
+static double *cell(struct row *row, int column) { return (double *)(void *)((char *)row + COLUMNS[column].offset); }
 
 void row_print_header(FILE *out)
 {

@@ -16,7 +16,7 @@ struct row {
 	double effort;        /* 1 to 9; 0: the usual one, or the method has none */
 	double bytes, parameters;
 	double fit_seconds, decode_seconds, evaluate_ns;
-	int evaluated;        /* enum evaluated: from what the evaluation was timed */
+	int evaluated; /* enum evaluated: from what the evaluation was timed */
 	struct figures figures;
 };
 

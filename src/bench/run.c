@@ -29,7 +29,8 @@ static struct row empty_row(int material, int method)
 	return row;
 }
 
-static bp_status fit(const struct baseline *method, const struct bench_material *material, const struct row *row, void **state, bp_error *error)
+static bp_status fit(const struct baseline *method, const struct bench_material *material, const struct row *row, void **state,
+                     bp_error *error)
 {
 	if (row->effort > 0)
 		return method->fit_effort(material, (size_t)row->budget, (int)row->effort, state, error);
@@ -68,8 +69,8 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 	row->evaluated = method->evaluate && !method->prepare ? EVALUATED_MODEL : EVALUATED_TABLE;
 	if (method->prepare && (status = method->prepare(state, table, error)))
 		goto out;
-	status = method->evaluate ? time_model(method, state, run->pairs, REPEATS, &row->evaluate_ns, error) :
-	                            time_table(table, run->pairs, REPEATS, &row->evaluate_ns, error);
+	status = method->evaluate ? time_model(method, state, run->pairs, REPEATS, &row->evaluate_ns, error)
+	                          : time_table(table, run->pairs, REPEATS, &row->evaluate_ns, error);
 	if (!status)
 		status = figures_measure(reference, table, &row->figures, error);
 out:
@@ -93,7 +94,8 @@ static void climb(struct run *run, const struct bench_material *material, const 
 		bp_status status = run_method(run, material, reference, method->baseline, &row, table, &error);
 		if (!status)
 			fwrite(&row, sizeof row, 1, run->rows);
-		else if (status == BP_ERROR_LIMIT || status == BP_ERROR_UNSUPPORTED || status == BP_ERROR_ARGUMENT) /* not this budget, or not this build */
+		else if (status == BP_ERROR_LIMIT || status == BP_ERROR_UNSUPPORTED ||
+		         status == BP_ERROR_ARGUMENT) /* not this budget, or not this build */
 			fprintf(stderr, "brdfpack-bench: %s: %s: no row: %s\n", material->name, method->name, error.message);
 		else
 			complain(run, material->name, method->name, &error);
@@ -133,7 +135,8 @@ static bool same_dims(struct lattice_dims a, struct lattice_dims b)
 	return a.theta_h == b.theta_h && a.theta_d == b.theta_d && a.phi_d == b.phi_d;
 }
 
-static bp_status read_truth(const struct run *run, const char *name, struct lattice_dims dims, struct lattice *truth, bp_error *error)
+static bp_status read_truth(const struct run *run, const char *name, struct lattice_dims dims, struct lattice *truth,
+                            bp_error *error)
 {
 	char path[4096];
 	bp_status status;
@@ -176,7 +179,8 @@ static void run_material(struct run *run, int at)
 			goto out;
 		}
 	}
-	if (figure_reference_make(&run->plans, run->truth ? &truth : &lattice, &reference, &error) || expansion_alloc(lattice.dims, &table, &error)) {
+	if (figure_reference_make(&run->plans, run->truth ? &truth : &lattice, &reference, &error) ||
+	    expansion_alloc(lattice.dims, &table, &error)) {
 		complain(run, name, "rendering the reference", &error);
 		goto out;
 	}

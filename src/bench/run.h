@@ -16,16 +16,16 @@ enum { LADDER_MAX = 16, RUN_WORKERS_MAX = 64, REPEATS = 3 };
 struct run {
 	struct inputs inputs;
 	const char *truth; /* folder of the tables that the figures are taken against; NULL: the inputs themselves */
-	bool quick; /* every fit once */
+	bool quick;        /* every fit once */
 	bool method_on[METHOD_COUNT];
 	double budgets[LADDER_MAX], efforts[LADDER_MAX];
 	int budget_count, effort_count;
 	/* the run's own, zero before it */
 	struct figure_plans plans;
 	struct lattice_dims dims; /* of the plans */
-	struct pairs *pairs; /* the caller's */
-	FILE *rows; /* binary struct row */
-	bool failed; /* something was reported on standard error */
+	struct pairs *pairs;      /* the caller's */
+	FILE *rows;               /* binary struct row */
+	bool failed;              /* something was reported on standard error */
 };
 
 /*

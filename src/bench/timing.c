@@ -55,7 +55,8 @@ static bp_status check_sum(double sum, bool negative, bp_error *error)
 {
 	if (isfinite(sum) && !negative)
 		return BP_OK;
-	return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "an evaluation gave a value that is %s", negative ? "negative" : "not finite");
+	return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "an evaluation gave a value that is %s",
+	                 negative ? "negative" : "not finite");
 }
 
 bp_status time_model(const struct baseline *method, const void *state, const struct pairs *pairs, int repeats, double *ns,

@@ -175,10 +175,7 @@ void tucker_free(void *opaque)
 	free(state);
 }
 
-static size_t floats_per_term(struct lattice_dims dims)
-{
-	return (size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3;
-}
+static size_t floats_per_term(struct lattice_dims dims) { return (size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3; }
 
 static bp_status tucker_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
 {
@@ -203,10 +200,7 @@ static size_t tucker_parameters(const void *opaque)
 	return state->terms * floats_per_term(state->dims);
 }
 
-static size_t tucker_bytes(const void *state)
-{
-	return tucker_parameters(state) * sizeof(float);
-}
+static size_t tucker_bytes(const void *state) { return tucker_parameters(state) * sizeof(float); }
 
 static bp_status tucker_expand(const void *opaque, struct expansion *out, bp_error *error)
 {

@@ -29,7 +29,8 @@ const struct mixer_tables *mixer_tables_get(void)
 		tables_fill(&tables);
 		__atomic_store_n(&ready, 2, __ATOMIC_RELEASE);
 	} else {
-		while (__atomic_load_n(&ready, __ATOMIC_ACQUIRE) != 2) { }
+		while (__atomic_load_n(&ready, __ATOMIC_ACQUIRE) != 2) {
+		}
 	}
 	return &tables;
 }

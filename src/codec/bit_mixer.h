@@ -21,7 +21,13 @@ typedef uint32_t mixer_context;
 struct mixer_weights {
 	int32_t w[MIXER_INPUTS];
 };
-enum { MIXER_WEIGHT_START = 19661, MIXER_WEIGHT_MAX = (1 << 18) - 1, MIXER_SEEN_MAX_ALONE = 250, MIXER_SEEN_MAX_PAIR = 40, MIXER_SEEN_MAX = 60 };
+enum {
+	MIXER_WEIGHT_START = 19661,
+	MIXER_WEIGHT_MAX = (1 << 18) - 1,
+	MIXER_SEEN_MAX_ALONE = 250,
+	MIXER_SEEN_MAX_PAIR = 40,
+	MIXER_SEEN_MAX = 60
+};
 
 /* The four inputs side by side. All sums and products of the mixer fit 32 bits; FORMAT.md has the bounds. */
 typedef int32_t mixer_lanes __attribute__((vector_size(4 * MIXER_INPUTS)));
@@ -43,7 +49,8 @@ struct mixed_coder {
 };
 
 /* p + floor((2^22 - p) / 64) rate / 1024 or p - floor(p / 64) rate / 1024, both where p stands in the context; p is never 0. */
-static inline mixer_context mixer_context_learnt(const struct mixer_tables *tables, mixer_context state, uint32_t bit, uint32_t limit)
+static inline mixer_context mixer_context_learnt(const struct mixer_tables *tables, mixer_context state, uint32_t bit,
+                                                 uint32_t limit)
 {
 	const uint32_t seen = state & 1023, rate = tables->rate[seen], more = seen < limit;
 	if (bit)
@@ -70,7 +77,8 @@ static inline uint32_t mixed_bit_alone(struct mixed_coder *coder, int decode, mi
 }
 
 /* One bit by the average of two contexts, not the same. */
-static inline uint32_t mixed_bit_pair(struct mixed_coder *coder, int decode, mixer_context *first, mixer_context *second, uint32_t bit)
+static inline uint32_t mixed_bit_pair(struct mixed_coder *coder, int decode, mixer_context *first, mixer_context *second,
+                                      uint32_t bit)
 {
 	const mixer_context a = *first, b = *second;
 	bit = mixed_bit_with(coder, decode, ((a >> 10) + (b >> 10)) >> 7, bit);
@@ -85,10 +93,10 @@ static inline uint32_t mixed_bit(struct mixed_coder *coder, int decode, mixer_co
 {
 	const struct mixer_tables *tables = coder->tables;
 	const mixer_words state = {*context[0], *context[1], *context[2], *context[3]};
-	const mixer_lanes input = {tables->stretch[*context[0] >> 20], tables->stretch[*context[1] >> 20], tables->stretch[*context[2] >> 20],
-	                           tables->stretch[*context[3] >> 20]};
-	const mixer_words rate = {tables->rate[*context[0] & 1023], tables->rate[*context[1] & 1023], tables->rate[*context[2] & 1023],
-	                          tables->rate[*context[3] & 1023]};
+	const mixer_lanes input = {tables->stretch[*context[0] >> 20], tables->stretch[*context[1] >> 20],
+	                           tables->stretch[*context[2] >> 20], tables->stretch[*context[3] >> 20]};
+	const mixer_words rate = {tables->rate[*context[0] & 1023], tables->rate[*context[1] & 1023],
+	                          tables->rate[*context[2] & 1023], tables->rate[*context[3] & 1023]};
 	mixer_lanes w;
 
 	memcpy(&w, weights->w, sizeof w);

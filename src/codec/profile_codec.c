@@ -1,6 +1,6 @@
 #include "profile_codec.h"
 
-static const struct profile_codec *const CODECS[] = { &PAPER_CODEC, &SPECTRAL_CODEC };
+static const struct profile_codec *const CODECS[] = {&PAPER_CODEC, &SPECTRAL_CODEC};
 
 const struct profile_codec *profile_codec_find(enum profile profile)
 {
@@ -12,7 +12,7 @@ const struct profile_codec *profile_codec_find(enum profile profile)
 
 const struct profile_encoder *profile_codec_find_encoder(enum profile profile)
 {
-	static const struct profile_encoder *const ENCODERS[] = { &PAPER_ENCODER, &SPECTRAL_ENCODER };
+	static const struct profile_encoder *const ENCODERS[] = {&PAPER_ENCODER, &SPECTRAL_ENCODER};
 	for (size_t i = 0; i < sizeof ENCODERS / sizeof *ENCODERS; i++)
 		if (ENCODERS[i]->profile == profile)
 			return ENCODERS[i];

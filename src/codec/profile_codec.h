@@ -10,8 +10,8 @@
 /* What an encoder may spend. */
 struct encode_request {
 	const struct fit_options *options;
-	size_t name_bytes;           /* for record_head_size */
-	uint32_t record_bytes_max;   /* head included */
+	size_t name_bytes;         /* for record_head_size */
+	uint32_t record_bytes_max; /* head included */
 };
 
 /* A section that has been fetched and whose checksum holds. */
@@ -37,8 +37,8 @@ struct profile_codec {
 	 * record_decode frees what has been attached with model_free. Offsets in errors count from the section's start
 	 * when *failed names its place in the list, which is UINT32_MAX before.
 	 */
-	bp_status (*decode)(const struct record_head *head, const struct section_bytes *sections, uint32_t count,
-	                    struct model *model, uint32_t *failed, bp_error *error);
+	bp_status (*decode)(const struct record_head *head, const struct section_bytes *sections, uint32_t count, struct model *model,
+	                    uint32_t *failed, bp_error *error);
 };
 
 /* Apart from the above, so that a program that only reads links no encoder. */

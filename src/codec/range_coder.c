@@ -5,7 +5,7 @@ enum { RANGE_LEAST = 1 << 24 }; /* range is kept at or above this */
 void bit_models_reset(struct bit_model *models, size_t count)
 {
 	for (size_t i = 0; i < count; i++)
-		models[i] = (struct bit_model){ .probability = BIT_MODEL_EVEN };
+		models[i] = (struct bit_model){.probability = BIT_MODEL_EVEN};
 }
 
 /*
@@ -28,7 +28,7 @@ static void model_update(struct bit_model *model, uint32_t bit)
 
 void range_encoder_start(struct range_encoder *encoder, struct byte_buffer *out)
 {
-	*encoder = (struct range_encoder){ .out = out, .range = UINT32_MAX, .pending = 1 };
+	*encoder = (struct range_encoder){.out = out, .range = UINT32_MAX, .pending = 1};
 }
 
 /* Moves the top byte of low out, once no later carry can change it. */
@@ -97,7 +97,7 @@ static uint32_t next_byte(struct range_decoder *decoder)
 
 void range_decoder_start(struct range_decoder *decoder, const uint8_t *bytes, size_t count)
 {
-	*decoder = (struct range_decoder){ .bytes = bytes, .count = count, .range = UINT32_MAX };
+	*decoder = (struct range_decoder){.bytes = bytes, .count = count, .range = UINT32_MAX};
 	for (int i = 0; i < 4; i++)
 		decoder->code = decoder->code << 8 | next_byte(decoder);
 }

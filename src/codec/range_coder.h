@@ -72,10 +72,7 @@ static inline uint32_t range_decode_with(struct range_decoder *decoder, uint32_t
 	return 0;
 }
 /* True when exactly the bytes given were used: what an intact stream shows behind its last bit. */
-static inline int range_decoder_ended(const struct range_decoder *decoder)
-{
-	return decoder->at == decoder->count;
-}
+static inline int range_decoder_ended(const struct range_decoder *decoder) { return decoder->at == decoder->count; }
 
 /*
  * Numbers 0..2^24-2 in Elias's gamma manner: the length of value + 1 in unary with a model per place, then

@@ -65,26 +65,27 @@ static bp_status sections_fetch(const struct record_head *head, const struct pro
 		bp_status status;
 		if (!kind_among(codec->kinds, codec->kind_count, entry)) {
 			if (kind_among(codec->retired, codec->retired_count, entry))
-				return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
-				                 "%s: packed by an earlier version whose records of this profile are no longer read; pack the material again",
-				                 head->name);
+				return error_set(
+					error, BP_ERROR_UNSUPPORTED, entry->offset,
+					"%s: packed by an earlier version whose records of this profile are no longer read; pack the material again",
+					head->name);
 			if (entry->flags & SECTION_REQUIRED)
 				return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
-				                 "%s: a section of type %u, codec %u, version %u is required; a newer program is needed", head->name,
-				                 entry->type, entry->codec, entry->version);
+				                 "%s: a section of type %u, codec %u, version %u is required; a newer program is needed",
+				                 head->name, entry->type, entry->codec, entry->version);
 			continue;
 		}
 		status = section_fetch(entry, fetch, user, &held[*count], error);
 		if (status)
 			return status;
-		sections[*count] = (struct section_bytes){ .entry = entry, .bytes = held[*count] };
+		sections[*count] = (struct section_bytes){.entry = entry, .bytes = held[*count]};
 		++*count;
 	}
 	return BP_OK;
 }
 
-bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user,
-                        struct model **out, bp_error *error)
+bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user, struct model **out,
+                        bp_error *error)
 {
 	const struct profile_codec *codec = profile_codec_find(head->profile);
 	struct section_bytes sections[RECORD_SECTIONS_MAX];
@@ -129,7 +130,8 @@ static bp_status memory_fetch(void *user, uint64_t offset, uint8_t *bytes, size_
 	return BP_OK;
 }
 
-bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out, bp_error *error)
+bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out,
+                              bp_error *error)
 {
 	return record_decode(head, layers, memory_fetch, (void *)(uintptr_t)record, out, error);
 }

@@ -19,7 +19,9 @@ enum { RECORD_BYTES_MAX = 1 << 24, RECORD_HEAD_BYTES_MAX = 4096, RECORD_HEAD_BYT
 enum { RECORD_BUDGET_MIN = 1000, RECORD_BUDGET_MAX = 4000000 };
 
 /* Every record begins with these bytes. */
-#define RECORD_MAGIC "\x8b" "REC\r\n\x1a\n"
+#define RECORD_MAGIC \
+	"\x8b" \
+	"REC\r\n\x1a\n"
 enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 2 };
 
 /* In place of a codec version: no encoder made this record as it is, so no rebuild takes it for what it would make. */
@@ -56,12 +58,12 @@ struct record_layer {
 
 struct record_section {
 	uint16_t type, codec, version;
-	uint16_t layer;    /* the first layer that needs it; 0: every load does */
-	uint16_t flags;    /* section_flag; a reader ignores other bits */
-	uint32_t offset;   /* from the record's start */
+	uint16_t layer;  /* the first layer that needs it; 0: every load does */
+	uint16_t flags;  /* section_flag; a reader ignores other bits */
+	uint32_t offset; /* from the record's start */
 	uint32_t bytes;
 	uint32_t crc32;
-	double error;      /* what `list NAME` shows beside the section, or NaN where it has none */
+	double error; /* what `list NAME` shows beside the section, or NaN where it has none */
 };
 
 /* All that is known of a record without reading its sections. */
@@ -79,7 +81,8 @@ struct record_head {
 	struct record_layer layers[LAYERS_MAX];
 	uint32_t section_count;
 	struct record_section sections[RECORD_SECTIONS_MAX];
-	uint32_t left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 in all channels and are not stored */
+	uint32_t
+		left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 in all channels and are not stored */
 	uint32_t channels; /* bit c: channel c is wanted. All three when parsed; who loads one alone clears the others */
 };
 
@@ -94,8 +97,8 @@ uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t sect
  * most max_error; BP_ERROR_LIMIT says what was reached when 4,000,000 bytes do not suffice.
  */
 bp_status record_encode(const struct lattice *lattice, const char *name, const struct record_source *source,
-                      const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
-                      bp_error *error);
+                        const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
+                        bp_error *error);
 
 /* Bytes from the record's start that tell head_bytes and record_bytes. */
 enum { RECORD_PROBE_BYTES = 16 };
@@ -119,10 +122,11 @@ uint32_t record_layers_for(const struct record_head *head, double max_log_rmse);
 bp_status record_verify(const uint8_t *record, size_t count, struct record_head *head, bp_error *error);
 
 /* Fetches and checks the sections of layers 0..layers-1 (0: all) and builds the model; the caller frees it with model_free. */
-bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user,
-                        struct model **out, bp_error *error);
+bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user, struct model **out,
+                        bp_error *error);
 /* The same from a record that is in memory, all head->record_bytes of it. */
-bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out, bp_error *error);
+bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out,
+                              bp_error *error);
 
 /*
  * Copies a record with layers 0..layers-1 only (0: all), its sections byte for byte: *out is malloc'ed. Where layers are

@@ -15,7 +15,8 @@ static bool head_serves(const struct record_head *head, const struct lattice *la
 	const uint64_t bytes = head->record_bytes - strlen(head->name) + name_bytes;
 	const bool bounded = options->max_error > 0;
 	return head->record_bytes == carried_bytes && head->profile == options->profile &&
-	       !memcmp(&head->dims, &lattice->dims, sizeof head->dims) && bytes <= (bounded ? RECORD_BUDGET_MAX : options->budget_bytes) &&
+	       !memcmp(&head->dims, &lattice->dims, sizeof head->dims) &&
+	       bytes <= (bounded ? RECORD_BUDGET_MAX : options->budget_bytes) &&
 	       (!bounded || head->options.max_error == options->max_error);
 }
 
@@ -37,7 +38,8 @@ static bp_status model_compare(const struct lattice *lattice, const struct model
 }
 
 /* Decodes every layer, as whoever loads the record may ask for any, and compares the last. */
-static bp_status record_compare(const struct lattice *lattice, const uint8_t *record, const struct record_head *head, bool *same, bp_error *error)
+static bp_status record_compare(const struct lattice *lattice, const uint8_t *record, const struct record_head *head, bool *same,
+                                bp_error *error)
 {
 	bp_status status = BP_OK;
 	for (uint32_t layers = 1; layers <= head->layer_count && !status; layers++) {
@@ -50,15 +52,16 @@ static bp_status record_compare(const struct lattice *lattice, const uint8_t *re
 	return status;
 }
 
-bp_status record_carried(const struct lattice *lattice, const struct carried *carried, const char *name, const struct fit_options *options,
-                         uint8_t **record, size_t *record_bytes, bp_error *error)
+bp_status record_carried(const struct lattice *lattice, const struct carried *carried, const char *name,
+                         const struct fit_options *options, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	const size_t name_bytes = strlen(name);
 	struct record_head head;
 	bool same = false;
 
 	*record = NULL;
-	if (!carried->bytes || name_fault(name, name_bytes) || record_head_parse(carried->bytes, carried->count, &head, NULL) != BP_OK ||
+	if (!carried->bytes || name_fault(name, name_bytes) ||
+	    record_head_parse(carried->bytes, carried->count, &head, NULL) != BP_OK ||
 	    !head_serves(&head, lattice, carried->count, name_bytes, options))
 		return BP_OK;
 	const enum stage before = stage_enter(STAGE_CODE);

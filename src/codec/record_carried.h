@@ -23,7 +23,7 @@
  *
  * Fails only where memory runs out.
  */
-bp_status record_carried(const struct lattice *lattice, const struct carried *carried, const char *name, const struct fit_options *options,
-                         uint8_t **record, size_t *record_bytes, bp_error *error);
+bp_status record_carried(const struct lattice *lattice, const struct carried *carried, const char *name,
+                         const struct fit_options *options, uint8_t **record, size_t *record_bytes, bp_error *error);
 
 #endif

@@ -6,8 +6,8 @@
 #include "section.h"
 
 /* Checks the record, and writes it with the layers 0..layers-1 and that name. */
-static bp_status record_copy(const uint8_t *record, size_t count, uint32_t layers, const char *name, uint8_t **out, size_t *out_bytes,
-                             bp_error *error)
+static bp_status record_copy(const uint8_t *record, size_t count, uint32_t layers, const char *name, uint8_t **out,
+                             size_t *out_bytes, bp_error *error)
 {
 	struct section_list kept = {0};
 	struct record_head head;
@@ -19,7 +19,8 @@ static bp_status record_copy(const uint8_t *record, size_t count, uint32_t layer
 	for (uint32_t i = 0; i < head.section_count; i++) {
 		const struct record_section *entry = &head.sections[i];
 		if (entry->layer < layers)
-			write_bytes(section_add(&kept, (enum section_type)entry->type, entry->codec, entry->version, entry->layer, entry->flags, entry->error),
+			write_bytes(section_add(&kept, (enum section_type)entry->type, entry->codec, entry->version, entry->layer,
+			                        entry->flags, entry->error),
 			            record + entry->offset, entry->bytes);
 	}
 	if (layers < head.layer_count)
@@ -34,7 +35,8 @@ static bp_status record_copy(const uint8_t *record, size_t count, uint32_t layer
 	return written;
 }
 
-bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layers, uint8_t **out, size_t *out_bytes, bp_error *error)
+bp_status record_keep_layers(const uint8_t *record, size_t count, uint32_t layers, uint8_t **out, size_t *out_bytes,
+                             bp_error *error)
 {
 	return record_copy(record, count, layers, NULL, out, out_bytes, error);
 }

@@ -44,9 +44,9 @@ struct packed {
 /* One record of at most record_bytes_max, its layers measured. */
 static bp_status record_build(const struct packing *packing, uint32_t record_bytes_max, struct packed *out, bp_error *error)
 {
-	struct packed packed = { .head = packing->head };
+	struct packed packed = {.head = packing->head};
 	struct encode_request request = packing->request;
-	struct section_list sections = { 0 };
+	struct section_list sections = {0};
 	struct model *decoded = NULL;
 	bp_status status;
 
@@ -55,11 +55,12 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 	status = watch_tell(request.options->watch, 0.6, error);
 	if (status)
 		goto out;
-	status = packing->encoder->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, &decoded,
-	                                error);
+	status = packing->encoder->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out,
+	                                  &decoded, error);
 	if (status)
 		goto out;
-	status = record_measure(&packed.head, &sections, packing->lattice, decoded, request.options->watch, &packed.record, &packed.bytes, error);
+	status = record_measure(&packed.head, &sections, packing->lattice, decoded, request.options->watch, &packed.record,
+	                        &packed.bytes, error);
 	if (!status && packed.bytes > record_bytes_max) {
 		free(packed.record);
 		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the record takes %zu bytes, the budget is %u", packed.bytes,
@@ -112,12 +113,12 @@ static uint32_t bracket_next(const struct bracket *b, double max_error)
  */
 static bp_status record_search(const struct packing *packing, double max_error, struct packed *best, bp_error *error)
 {
-	struct bracket bracket = { .low = RECORD_BUDGET_MIN - 1 };
+	struct bracket bracket = {.low = RECORD_BUDGET_MIN - 1};
 	uint32_t size = SEARCH_START;
 
 	best->record = NULL;
 	while (!bracket.high || (bracket.high > bracket.low && bracket.high - bracket.low > bracket.high / 100 + 1)) {
-		struct packed trial = { .record = NULL };
+		struct packed trial = {.record = NULL};
 		bp_status status = record_build(packing, size, &trial, error);
 		if (status && (status != BP_ERROR_LIMIT || size == RECORD_BUDGET_MAX)) {
 			free(best->record);
@@ -151,11 +152,11 @@ static bp_status record_search(const struct packing *packing, double max_error, 
 }
 
 bp_status record_encode(const struct lattice *lattice, const char *name, const struct record_source *source,
-                      const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
-                      bp_error *error)
+                        const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
+                        bp_error *error)
 {
-	struct packing packing = { .lattice = lattice, .encoder = profile_codec_find_encoder(options->profile) };
-	struct packed packed = { .record = NULL };
+	struct packing packing = {.lattice = lattice, .encoder = profile_codec_find_encoder(options->profile)};
+	struct packed packed = {.record = NULL};
 	struct model *model = NULL;
 	size_t name_bytes = strlen(name);
 	const char *fault = name_fault(name, name_bytes);
@@ -169,7 +170,7 @@ bp_status record_encode(const struct lattice *lattice, const char *name, const s
 	if (status)
 		return status;
 	packing.model = model;
-	packing.request = (struct encode_request){ .options = options, .name_bytes = name_bytes };
+	packing.request = (struct encode_request){.options = options, .name_bytes = name_bytes};
 	head_fill(&packing.head, model, name, source, options, profile_codec_find(options->profile)->version);
 	if (options->max_error > 0 && !packing.encoder->meets_max_error)
 		status = record_search(&packing, options->max_error, &packed, error);

@@ -13,8 +13,18 @@ uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t sect
 
 /* Where things stand in a head, for error offsets. */
 enum {
-	AT_HEAD_BYTES = 8, AT_RECORD_BYTES = 12, AT_VERSION = 16, AT_DIMS = 24, AT_NAME_BYTES = 30, AT_LAYER_COUNT = 31,
-	AT_SECTION_COUNT = 32, AT_OPTIONS = 36, AT_RESERVED = 52, AT_HORIZON = 56, AT_COLOUR = 112, AT_TABLES = 208
+	AT_HEAD_BYTES = 8,
+	AT_RECORD_BYTES = 12,
+	AT_VERSION = 16,
+	AT_DIMS = 24,
+	AT_NAME_BYTES = 30,
+	AT_LAYER_COUNT = 31,
+	AT_SECTION_COUNT = 32,
+	AT_OPTIONS = 36,
+	AT_RESERVED = 52,
+	AT_HORIZON = 56,
+	AT_COLOUR = 112,
+	AT_TABLES = 208
 };
 
 bp_status record_probe(const uint8_t bytes[RECORD_PROBE_BYTES], uint32_t *head_bytes, uint32_t *record_bytes, bp_error *error)
@@ -23,8 +33,8 @@ bp_status record_probe(const uint8_t bytes[RECORD_PROBE_BYTES], uint32_t *head_b
 	if (memcmp(bytes, RECORD_MAGIC, RECORD_MAGIC_BYTES) != 0)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "a record should begin here");
 	if (head < RECORD_HEAD_BYTES_MIN || head > RECORD_HEAD_BYTES_MAX)
-		return error_set(error, BP_ERROR_CORRUPT, AT_HEAD_BYTES, "the record's head claims %u bytes; %d to %d are possible",
-		                 head, RECORD_HEAD_BYTES_MIN, RECORD_HEAD_BYTES_MAX);
+		return error_set(error, BP_ERROR_CORRUPT, AT_HEAD_BYTES, "the record's head claims %u bytes; %d to %d are possible", head,
+		                 RECORD_HEAD_BYTES_MIN, RECORD_HEAD_BYTES_MAX);
 	if (record < head || record > RECORD_BYTES_MAX)
 		return error_set(error, BP_ERROR_CORRUPT, AT_RECORD_BYTES, "the record claims %u bytes; %u to %d are possible", record,
 		                 head, RECORD_BYTES_MAX);
@@ -34,10 +44,7 @@ bp_status record_probe(const uint8_t bytes[RECORD_PROBE_BYTES], uint32_t *head_b
 }
 
 /* A figure of a layer: not negative, not NaN. */
-static bool figure_legal(double figure)
-{
-	return figure >= 0;
-}
+static bool figure_legal(double figure) { return figure >= 0; }
 
 static bp_status parse_layers(struct byte_reader *in, struct record_head *head, bp_error *error)
 {
@@ -49,8 +56,8 @@ static bp_status parse_layers(struct byte_reader *in, struct record_head *head, 
 		layer->fidelity.log_rmse = read_f64(in);
 		layer->fidelity.cube_root_rmse = read_f64(in);
 		layer->fidelity.largest_relative = read_f64(in);
-		if (!figure_legal(layer->fidelity.seen_log_rmse) || !figure_legal(layer->fidelity.log_rmse) || !figure_legal(layer->fidelity.cube_root_rmse) ||
-		    !figure_legal(layer->fidelity.largest_relative))
+		if (!figure_legal(layer->fidelity.seen_log_rmse) || !figure_legal(layer->fidelity.log_rmse) ||
+		    !figure_legal(layer->fidelity.cube_root_rmse) || !figure_legal(layer->fidelity.largest_relative))
 			return error_set(error, BP_ERROR_CORRUPT, at, "layer %u: a figure is negative or not a number", l);
 	}
 	return BP_OK;
@@ -149,14 +156,14 @@ static bp_status parse_fixed(struct byte_reader *in, struct record_head *head, s
 	read_bytes(in, head->source.sha256, SHA256_BYTES);
 	head->source.nonfinite_count = read_u64(in);
 	if (!lattice_dims_legal(head->dims))
-		return error_set(error, BP_ERROR_CORRUPT, AT_DIMS, "a lattice of %ux%ux%u cells is beyond the limits",
-		                 head->dims.theta_h, head->dims.theta_d, head->dims.phi_d);
+		return error_set(error, BP_ERROR_CORRUPT, AT_DIMS, "a lattice of %ux%ux%u cells is beyond the limits", head->dims.theta_h,
+		                 head->dims.theta_d, head->dims.phi_d);
 	if (head->layer_count < 1 || head->layer_count > LAYERS_MAX)
 		return error_set(error, BP_ERROR_CORRUPT, AT_LAYER_COUNT, "%u layers; 1 to %d are possible", head->layer_count,
 		                 LAYERS_MAX);
 	if (head->section_count > RECORD_SECTIONS_MAX)
-		return error_set(error, BP_ERROR_CORRUPT, AT_SECTION_COUNT, "%u sections; at most %d are possible",
-		                 head->section_count, RECORD_SECTIONS_MAX);
+		return error_set(error, BP_ERROR_CORRUPT, AT_SECTION_COUNT, "%u sections; at most %d are possible", head->section_count,
+		                 RECORD_SECTIONS_MAX);
 	if (record_head_size(*name_bytes, head->layer_count, head->section_count) != head->head_bytes)
 		return error_set(error, BP_ERROR_CORRUPT, AT_HEAD_BYTES,
 		                 "a head of %u bytes does not fit %zu bytes of name, %u layers and %u sections", head->head_bytes,
@@ -206,7 +213,8 @@ bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_he
 	read_bytes(&in, head.name, name_bytes);
 	fault = name_fault(head.name, name_bytes);
 	if (in.failed || fault)
-		return error_set(error, BP_ERROR_CORRUPT, in.at - name_bytes, "the record's name is not legal: %s", fault ? fault : "short");
+		return error_set(error, BP_ERROR_CORRUPT, in.at - name_bytes, "the record's name is not legal: %s",
+		                 fault ? fault : "short");
 	*out = head;
 	return BP_OK;
 }

@@ -28,7 +28,7 @@ static bp_status layers_measure(struct record_head *head, const uint8_t *record,
 {
 	/* A large lattice's layers one by one: their tables would take more memory than the pass is worth. */
 	const uint32_t at_once = lattice_cells(head->dims) <= MEASURED_CELLS_MAX ? MEASURED_AT_ONCE : 1;
-	struct expansion tables[MEASURED_AT_ONCE] = { 0 };
+	struct expansion tables[MEASURED_AT_ONCE] = {0};
 	struct fidelity figures[MEASURED_AT_ONCE];
 	bp_status status = BP_OK;
 
@@ -53,7 +53,8 @@ static bp_status layers_measure(struct record_head *head, const uint8_t *record,
 }
 
 bp_status record_measure(struct record_head *head, const struct section_list *sections, const struct lattice *lattice,
-                         const struct model *decoded, const struct watch *watch, uint8_t **record, size_t *record_bytes, bp_error *error)
+                         const struct model *decoded, const struct watch *watch, uint8_t **record, size_t *record_bytes,
+                         bp_error *error)
 {
 	uint8_t *unmeasured = NULL;
 	/* Once to have the bytes that are decoded, once more with what was measured on them. */

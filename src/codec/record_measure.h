@@ -12,6 +12,7 @@
  * `watch` is told before every layer.
  */
 bp_status record_measure(struct record_head *head, const struct section_list *sections, const struct lattice *lattice,
-                         const struct model *decoded, const struct watch *watch, uint8_t **record, size_t *record_bytes, bp_error *error);
+                         const struct model *decoded, const struct watch *watch, uint8_t **record, size_t *record_bytes,
+                         bp_error *error);
 
 #endif

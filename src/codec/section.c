@@ -14,8 +14,12 @@ struct byte_buffer *section_add(struct section_list *list, enum section_type typ
 	if (list->count == RECORD_SECTIONS_MAX || layer >= LAYERS_MAX)
 		return NULL;
 	list->entry[list->count] = (struct record_section){
-		.type = (uint16_t)type, .codec = codec, .version = version,
-		.layer = (uint16_t)layer, .flags = (uint16_t)flags, .error = error,
+		.type = (uint16_t)type,
+		.codec = codec,
+		.version = version,
+		.layer = (uint16_t)layer,
+		.flags = (uint16_t)flags,
+		.error = error,
 	};
 	return &list->bytes[list->count++];
 }
@@ -24,7 +28,7 @@ void section_list_free(struct section_list *list)
 {
 	for (uint32_t i = 0; i < list->count; i++)
 		byte_buffer_free(&list->bytes[i]);
-	*list = (struct section_list){ 0 };
+	*list = (struct section_list){0};
 }
 
 /* Places the sections behind the head and measures the layers. */
@@ -45,8 +49,7 @@ static bp_status head_lay_out(struct record_head *head, const struct section_lis
 		if (sections->bytes[i].failed)
 			return error_memory(error, sections->bytes[i].count);
 		if (entry->layer >= head->layer_count || (i && entry->layer < head->sections[i - 1].layer))
-			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "section %u has layer %u, out of order", i,
-			                 entry->layer);
+			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "section %u has layer %u, out of order", i, entry->layer);
 		if (sections->bytes[i].count == 0 || sections->bytes[i].count > RECORD_BYTES_MAX - at)
 			return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "section %u has %zu bytes; a record has at most %d", i,
 			                 sections->bytes[i].count, RECORD_BYTES_MAX);
@@ -130,7 +133,7 @@ static void head_write(const struct record_head *head, struct byte_buffer *out)
 bp_status record_write(struct record_head *head, const struct section_list *sections, uint8_t **record, size_t *record_bytes,
                        bp_error *error)
 {
-	struct byte_buffer out = { 0 };
+	struct byte_buffer out = {0};
 	const char *fault = name_fault(head->name, strlen(head->name));
 	bp_status status;
 	if (fault)

@@ -40,7 +40,8 @@ static bool head_read(struct carried_reader *reader)
 {
 	for (size_t n = 0; n < HEAD_BYTES - sizeof MAGIC; n++)
 		reader->count |= (size_t)reader->head[sizeof MAGIC + n] << 8 * n;
-	reader->ended = memcmp(reader->head, MAGIC, sizeof MAGIC) != 0 || reader->count == 0 || !carried_fits(reader->count, reader->values);
+	reader->ended =
+		memcmp(reader->head, MAGIC, sizeof MAGIC) != 0 || reader->count == 0 || !carried_fits(reader->count, reader->values);
 	if (reader->ended)
 		return true;
 	reader->bytes = malloc(reader->count);

@@ -37,10 +37,10 @@ double carried_next(struct carried_writer *writer);
 
 /* What is found while a file is read: start from {values}. */
 struct carried_reader {
-	size_t values;       /* in the whole file, which bounds what can be carried */
-	uint8_t *bytes;      /* malloc'ed; the caller frees it in any case, or takes it when `whole` */
-	size_t count, at;    /* count: announced; at: of the whole string, its head included */
-	bool whole, ended;   /* ended: nothing more is looked for */
+	size_t values;     /* in the whole file, which bounds what can be carried */
+	uint8_t *bytes;    /* malloc'ed; the caller frees it in any case, or takes it when `whole` */
+	size_t count, at;  /* count: announced; at: of the whole string, its head included */
+	bool whole, ended; /* ended: nothing more is looked for */
 	uint8_t head[12];
 };
 /* Looks through the next values of the file, as they are stored there. False: no memory for the announced bytes. */

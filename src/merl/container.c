@@ -21,11 +21,11 @@ struct container {
 	struct archive *archive;
 	struct archive_entry *entry; /* the current one; libarchive's */
 	int fd;
-	char *raw_name;    /* of the only member of a compressed file that is no archive; else NULL */
-	char *path;        /* of the current member, or NULL */
-	uint32_t next;     /* ordinal of the next entry */
-	bool current;      /* an entry has been reached, and none of its bytes read */
-	bool pending;      /* the first entry, read while opening */
+	char *raw_name; /* of the only member of a compressed file that is no archive; else NULL */
+	char *path;     /* of the current member, or NULL */
+	uint32_t next;  /* ordinal of the next entry */
+	bool current;   /* an entry has been reached, and none of its bytes read */
+	bool pending;   /* the first entry, read while opening */
 	bool finished;
 	unsigned failures; /* entries that could not be read; a limit keeps hostile files from going on for ever */
 	size_t members, ignored;
@@ -142,7 +142,8 @@ static bp_status entry_next(struct container *container, bool *more, bp_error *e
 	return container->path ? BP_OK : error_memory(error, 256);
 }
 
-bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out, bp_error *error)
+bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out,
+                         bp_error *error)
 {
 	struct stat about;
 	bp_status status;
@@ -191,7 +192,8 @@ bp_status container_open(const char *path, enum container_order order, const cha
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "neither tar nor zip");
 	if (status != BP_OK && status != BP_ERROR_UNSUPPORTED && status != BP_ERROR_MEMORY && container_fault(container->fd))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", container_fault(container->fd));
-	else if (status == BP_OK && !container->remark && (archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_ZIP)
+	else if (status == BP_OK && !container->remark &&
+	         (archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_ZIP)
 		container->remark = container_fault(container->fd);
 	if (status == BP_OK && raw && !(container->raw_name = raw_member_name(path)))
 		status = error_memory(error, 256);
@@ -213,10 +215,7 @@ static bool entry_counts(struct container *container)
 	return counts;
 }
 
-static const char *text_or(const char *text, const char *other)
-{
-	return text && *text ? text : other;
-}
+static const char *text_or(const char *text, const char *other) { return text && *text ? text : other; }
 
 /* Why the current entry cannot be packed, or NULL. */
 static const char *entry_fault(struct container *container)
@@ -229,17 +228,20 @@ static const char *entry_fault(struct container *container)
 	if (archive_entry_is_data_encrypted(entry) || archive_entry_is_metadata_encrypted(entry))
 		return "encrypted; unpack it with its password first";
 	if (source_kind_by_name(container->path) != SOURCE_KIND_MERL)
-		return container->raw_name ? "what is compressed in it is no tar" : "a container within a container, which is not read; unpack the outer one first";
+		return container->raw_name ? "what is compressed in it is no tar"
+		                           : "a container within a container, which is not read; unpack the outer one first";
 	if (container->raw_name)
 		return NULL;
 	if (hard && !has_bytes) {
-		snprintf(container->fault, sizeof container->fault, "a hard link to %s, stored without its bytes; store the file itself (tar --hard-dereference)",
+		snprintf(container->fault, sizeof container->fault,
+		         "a hard link to %s, stored without its bytes; store the file itself (tar --hard-dereference)",
 		         text_or(hard, "another member"));
 		return container->fault;
 	}
 	if (archive_entry_filetype(entry) == AE_IFLNK) {
 		const char *soft = archive_entry_symlink_utf8(entry) ? archive_entry_symlink_utf8(entry) : archive_entry_symlink(entry);
-		snprintf(container->fault, sizeof container->fault, "a symbolic link to %s, stored without its bytes; store the file itself (tar --dereference, zip without -y)",
+		snprintf(container->fault, sizeof container->fault,
+		         "a symbolic link to %s, stored without its bytes; store the file itself (tar --dereference, zip without -y)",
 		         text_or(soft, "another file"));
 		return container->fault;
 	}
@@ -263,15 +265,9 @@ bp_status container_next(struct container *container, struct container_member *m
 	return status;
 }
 
-const char *container_remark(const struct container *container)
-{
-	return container->remark;
-}
+const char *container_remark(const struct container *container) { return container->remark; }
 
-size_t container_members(const struct container *container)
-{
-	return container->members;
-}
+size_t container_members(const struct container *container) { return container->members; }
 
 bool container_ahead(const struct container *container, uint32_t ordinal)
 {
@@ -289,7 +285,8 @@ bp_status container_seek(struct container *container, uint32_t ordinal, bp_error
 		status = entry_next(container, &more, error); /* one bad entry on the way does not bar the others */
 	locale_leave(before);
 	if (container->next <= ordinal && status == BP_OK)
-		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "the container ends before member %u; was it replaced?", ordinal);
+		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "the container ends before member %u; was it replaced?",
+		                 ordinal);
 	return status;
 }
 
@@ -307,10 +304,7 @@ bp_status container_read(void *user, void *bytes, size_t capacity, size_t *read,
 	return BP_OK;
 }
 
-size_t container_ignored(const struct container *container)
-{
-	return container->ignored;
-}
+size_t container_ignored(const struct container *container) { return container->ignored; }
 
 void container_close(struct container *container)
 {

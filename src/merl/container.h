@@ -17,10 +17,11 @@
 struct container;
 
 struct container_member {
-	const char *path;  /* inside the container, as stored; valid until the next call */
-	uint32_t ordinal;  /* among all entries of the container, from 0 */
-	uint64_t bytes;    /* UINT64_MAX where the format does not say */
-	const char *fault; /* why it cannot be packed, with the remedy; NULL: nothing is known against it. Valid as long as the path */
+	const char *path; /* inside the container, as stored; valid until the next call */
+	uint32_t ordinal; /* among all entries of the container, from 0 */
+	uint64_t bytes;   /* UINT64_MAX where the format does not say */
+	const char
+		*fault; /* why it cannot be packed, with the remedy; NULL: nothing is known against it. Valid as long as the path */
 };
 
 enum container_order {
@@ -34,7 +35,8 @@ enum container_order {
  * charset: of members' names that do not say that they are UTF-8, as iconv calls it; NULL: none is known, and such names stay as
  * they are.
  */
-bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out, bp_error *error);
+bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out,
+                         bp_error *error);
 
 /* What is wrong with the container as a whole although its members can be read, known when its end has been reached; NULL: nothing. */
 const char *container_remark(const struct container *container);

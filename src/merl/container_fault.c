@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-
 /* The end record of a zip: fixed part, and the longest comment behind it. */
 enum { HEAD_BYTES = 512, ZIP_END_BYTES = 22, ZIP_COMMENT_MAX = 65535, CHUNK_BYTES = 1 << 16 };
 
@@ -51,8 +50,8 @@ static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 		const uint32_t disk = number_at(end + 4, 2), bytes = number_at(end + 12, 4), offset = number_at(end + 16, 4);
 		if (disk != 0 && disk != 0xFFFF)
 			fault = "the last part of a split zip; join its parts first (zip -s 0 THIS.zip --out WHOLE.zip)";
-		else if (bytes != UINT32_MAX && offset != UINT32_MAX && (uint64_t)(start + at) > (uint64_t)bytes + offset && head_bytes >= 4 &&
-		         !memcmp(head, "PK\3\4", 4))
+		else if (bytes != UINT32_MAX && offset != UINT32_MAX && (uint64_t)(start + at) > (uint64_t)bytes + offset &&
+		         head_bytes >= 4 && !memcmp(head, "PK\3\4", 4))
 			fault = "another zip stands before this one in the same file, and its members are not read; separate them";
 		else if (!all_zeros(fd, start + at + ZIP_END_BYTES + (off_t)number_at(end + 20, 2)))
 			fault = REST;
@@ -62,14 +61,15 @@ static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 	return fault;
 }
 
-static bool begins(const char *head, const char *word)
-{
-	return strncasecmp(head, word, strlen(word)) == 0;
-}
+static bool begins(const char *head, const char *word) { return strncasecmp(head, word, strlen(word)) == 0; }
 
 const char *container_fault(int fd)
 {
-	static const struct { const char *bytes; size_t count; const char *fault; } MAGIC[] = {
+	static const struct {
+		const char *bytes;
+		size_t count;
+		const char *fault;
+	} MAGIC[] = {
 		{"PK\7\10", 4, "a part of a split zip; join its parts first (zip -s 0 LAST.zip --out WHOLE.zip)"},
 		{"PK00PK\3\4", 8, "a part of a split zip; join its parts first (zip -s 0 LAST.zip --out WHOLE.zip)"},
 		{"7z\xBC\xAF\x27\x1C", 6, "a 7z archive, which is not read; unpack it first"},
@@ -99,10 +99,7 @@ const char *container_fault(int fd)
 	return zip_fault(fd, (const uint8_t *)head, (size_t)got);
 }
 
-const char *container_rest(int fd, int64_t end)
-{
-	return all_zeros(fd, (off_t)end) ? NULL : REST;
-}
+const char *container_rest(int fd, int64_t end) { return all_zeros(fd, (off_t)end) ? NULL : REST; }
 
 const char *container_emptiness(int fd)
 {

@@ -24,25 +24,13 @@ static const double PI = 3.14159265358979323846;
 /* Directions lower than this get its values, also those below the horizon that were measured: mirrors then reach 1e5 /sr, as measured ones do. */
 static const double COSINE_MIN = 0.05;
 
-size_t demo_count(void)
-{
-	return sizeof MATERIALS / sizeof *MATERIALS;
-}
+size_t demo_count(void) { return sizeof MATERIALS / sizeof *MATERIALS; }
 
-const char *demo_name(size_t index)
-{
-	return MATERIALS[index].name;
-}
+const char *demo_name(size_t index) { return MATERIALS[index].name; }
 
-const char *demo_kind(size_t index)
-{
-	return MATERIALS[index].kind;
-}
+const char *demo_kind(size_t index) { return MATERIALS[index].kind; }
 
-static double fifth_power(double x)
-{
-	return x * x * x * x * x;
-}
+static double fifth_power(double x) { return x * x * x * x * x; }
 
 /* Walter et al. 2007, eq. 33, alpha = roughness */
 static double ggx_distribution(double roughness, double cos_h)
@@ -58,15 +46,12 @@ static double ggx_visibility(double roughness, double ci, double co)
 	return 0.5 / (co * sqrt(ci * ci * (1 - a2) + a2) + ci * sqrt(co * co * (1 - a2) + a2));
 }
 
-static double schlick(double normal, double cosine)
-{
-	return normal + (1 - normal) * fifth_power(1 - cosine);
-}
+static double schlick(double normal, double cosine) { return normal + (1 - normal) * fifth_power(1 - cosine); }
 
 /* 1 where the two sides of a film of refractive index 1.5 add up, 0.1 where they cancel. */
 static double film_factor(double thickness, double wavelength, double sin_d)
 {
-	const double path = 2 * thickness * sqrt(2.25 - sin_d * sin_d) / wavelength; /* in wavelengths */
+	const double path = 2 * thickness * sqrt(2.25 - sin_d * sin_d) / wavelength;                 /* in wavelengths */
 	const double turn = path - (double)(long)path, quarter = 4 * (turn < 0.5 ? turn : 1 - turn); /* cos is even */
 	double cosine, sine;
 	quarter_cos_sin(quarter <= 1 ? quarter : 2 - quarter, &cosine, &sine);
@@ -113,13 +98,10 @@ static struct difference_terms difference_terms(const struct demo_material *m, s
 	return t;
 }
 
-static double mean(const double colour[3])
-{
-	return (colour[0] + colour[1] + colour[2]) / 3;
-}
+static double mean(const double colour[3]) { return (colour[0] + colour[1] + colour[2]) / 3; }
 
-static void material_evaluate(const struct demo_material *m, const struct half_terms *h, const struct difference_terms *d, double cos_phi,
-                              double value[3])
+static void material_evaluate(const struct demo_material *m, const struct half_terms *h, const struct difference_terms *d,
+                              double cos_phi, double value[3])
 {
 	const double a = d->cosine * h->cosine, q = d->sine * cos_phi * h->sine;
 	const double ci = a - q > COSINE_MIN ? a - q : COSINE_MIN, co = a + q > COSINE_MIN ? a + q : COSINE_MIN;
@@ -145,10 +127,7 @@ static uint64_t draw(uint64_t *state)
 	return z ^ z >> 31;
 }
 
-static double draw_uniform(uint64_t *state)
-{
-	return (double)(draw(state) >> 11) * 0x1p-53;
-}
+static double draw_uniform(uint64_t *state) { return (double)(draw(state) >> 11) * 0x1p-53; }
 
 /* Mean 0, variance 1: the sum of the four 16-bit numbers of one draw. */
 static double draw_bell(uint64_t *state)
@@ -168,10 +147,10 @@ static uint64_t seed_of(const char *name)
 
 /* The instrument's faults for one row of cells along phi_d. */
 struct faults {
-	double amount;     /* 0: a clean table */
+	double amount; /* 0: a clean table */
 	uint64_t *state;
-	double streak;     /* this row's */
-	double grazing;    /* growth of the noise at this theta_d */
+	double streak;  /* this row's */
+	double grazing; /* growth of the noise at this theta_d */
 	bool drops_out;
 };
 

@@ -22,10 +22,7 @@ bool lattice_dims_legal(struct lattice_dims dims)
 	return lattice_cells(dims) <= LATTICE_CELLS_MAX;
 }
 
-size_t lattice_cells(struct lattice_dims dims)
-{
-	return (size_t)dims.theta_h * dims.theta_d * dims.phi_d;
-}
+size_t lattice_cells(struct lattice_dims dims) { return (size_t)dims.theta_h * dims.theta_d * dims.phi_d; }
 
 /* Three planes of `plane_bytes` and `extra` bytes in one block; planes[3] is where the extra bytes start. */
 static bp_status planes_alloc(size_t plane_bytes, size_t extra, void **block, unsigned char *planes[4], bp_error *error)
@@ -47,8 +44,9 @@ bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error)
 {
 	if (lattice_dims_legal(dims))
 		return BP_OK;
-	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "lattice of %u x %u x %u: each extent must be %d to %d, %d cells at most",
-	                 dims.theta_h, dims.theta_d, dims.phi_d, LATTICE_EXTENT_MIN, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
+	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+	                 "lattice of %u x %u x %u: each extent must be %d to %d, %d cells at most", dims.theta_h, dims.theta_d,
+	                 dims.phi_d, LATTICE_EXTENT_MIN, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
 }
 
 bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error)

@@ -51,11 +51,11 @@ extern const double MERL_SCALE[3];
 /* One measured material. Owned by whoever called lattice_alloc or lattice_read. */
 struct lattice {
 	struct lattice_dims dims;
-	double *rgb[3];      /* planes of lattice_cells(dims) values in 1/sr; unspecified (finite) where !valid */
-	uint8_t *valid;      /* 1: measured, in all three channels; 0: takes part in nothing */
+	double *rgb[3]; /* planes of lattice_cells(dims) values in 1/sr; unspecified (finite) where !valid */
+	uint8_t *valid; /* 1: measured, in all three channels; 0: takes part in nothing */
 	size_t valid_count;
 	size_t nonfinite_count; /* cells that were refused because a channel was NaN or infinite */
-	void *block;         /* the one allocation behind the planes, each aligned to 64 bytes */
+	void *block;            /* the one allocation behind the planes, each aligned to 64 bytes */
 };
 
 bool lattice_dims_legal(struct lattice_dims dims);

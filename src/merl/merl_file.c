@@ -16,10 +16,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "MERL files are little
 
 enum { HEADER_BYTES = 12, CHUNK_VALUES = 1 << 15 }; /* 256 KB: read, hashed and checked while in the cache */
 
-uint64_t merl_file_bytes(struct lattice_dims dims)
-{
-	return HEADER_BYTES + 3 * sizeof(double) * (uint64_t)lattice_cells(dims);
-}
+uint64_t merl_file_bytes(struct lattice_dims dims) { return HEADER_BYTES + 3 * sizeof(double) * (uint64_t)lattice_cells(dims); }
 
 /* Where the bytes come from and who looks on. */
 struct input {
@@ -63,14 +60,17 @@ static bp_status header_read(struct input *in, struct lattice_dims *dims, bp_err
 	if (status != BP_OK)
 		return status;
 	if (!got)
-		return error_set(error, BP_ERROR_BAD_INPUT, 0, "empty: expected a MERL file of %" PRIu64 " bytes", merl_file_bytes(LATTICE_MERL));
+		return error_set(error, BP_ERROR_BAD_INPUT, 0, "empty: expected a MERL file of %" PRIu64 " bytes",
+		                 merl_file_bytes(LATTICE_MERL));
 	if (got < sizeof extent)
 		return truncated(merl_file_bytes(LATTICE_MERL), got, error);
-	*dims = (struct lattice_dims){(uint32_t)extent[0], (uint32_t)extent[1], (uint32_t)extent[2]}; /* a negative one is too large */
+	*dims =
+		(struct lattice_dims){(uint32_t)extent[0], (uint32_t)extent[1], (uint32_t)extent[2]}; /* a negative one is too large */
 	const bool merl = extent[0] == 90 && extent[1] == 90 && extent[2] == 180;
 	if (merl || (in->how.any_dims && lattice_dims_legal(*dims)))
 		return BP_OK;
-	return error_set(error, BP_ERROR_BAD_INPUT, 0, "not a MERL file: expected the header 90 90 180%s, found %" PRId32 " %" PRId32 " %" PRId32,
+	return error_set(error, BP_ERROR_BAD_INPUT, 0,
+	                 "not a MERL file: expected the header 90 90 180%s, found %" PRId32 " %" PRId32 " %" PRId32,
 	                 in->how.any_dims ? " (or other legal extents)" : "", extent[0], extent[1], extent[2]);
 }
 
@@ -99,10 +99,12 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, struct c
 	if (status != BP_OK)
 		return status;
 	if (got)
-		return error_set(error, BP_ERROR_BAD_INPUT, expected, "trailing bytes: expected the end after %" PRIu64 " bytes, found more", expected);
+		return error_set(error, BP_ERROR_BAD_INPUT, expected,
+		                 "trailing bytes: expected the end after %" PRIu64 " bytes, found more", expected);
 	lattice_scan_finish(lattice);
 	if (!lattice->valid_count)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: each of the %zu is negative, NaN or infinite in some channel", cells);
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+		                 "no valid cell: each of the %zu is negative, NaN or infinite in some channel", cells);
 	return BP_OK;
 }
 
@@ -124,8 +126,8 @@ static bp_status input_read(struct input *in, uint64_t available, struct lattice
 	if (available < expected)
 		return truncated(expected, available, error);
 	if (available > expected && available != UINT64_MAX)
-		return error_set(error, BP_ERROR_BAD_INPUT, expected, "trailing bytes: expected %" PRIu64 " bytes, found %" PRIu64, expected,
-		                 available);
+		return error_set(error, BP_ERROR_BAD_INPUT, expected, "trailing bytes: expected %" PRIu64 " bytes, found %" PRIu64,
+		                 expected, available);
 	status = lattice_alloc(dims, &lattice, error);
 	if (status != BP_OK)
 		return status;
@@ -177,7 +179,8 @@ bp_status lattice_read_path(const char *path, const struct merl_reading *reading
 		goto out;
 	}
 	if (!S_ISREG(about.st_mode)) {
-		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s",
+		                   S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
 		goto out;
 	}
 	struct input in = input_over(descriptor_read, &fd, reading);
@@ -191,7 +194,8 @@ out:
 /* Fills values[count], in the file's units, from cell `start` of a channel; called in file order. */
 typedef void chunk_fill_fn(void *user, int channel, size_t start, size_t count, double *values);
 
-static bp_status planes_write(const char *path, enum output_rule rule, struct lattice_dims dims, chunk_fill_fn *fill, void *user, bp_error *error)
+static bp_status planes_write(const char *path, enum output_rule rule, struct lattice_dims dims, chunk_fill_fn *fill, void *user,
+                              bp_error *error)
 {
 	const size_t cells = lattice_cells(dims);
 	const int32_t header[3] = {(int32_t)dims.theta_h, (int32_t)dims.theta_d, (int32_t)dims.phi_d};
@@ -271,7 +275,8 @@ bool lattice_is_written(const struct lattice *lattice, const struct expansion *t
 			memset(state, 0, sizeof state);
 			lattice_scan(values, count, MERL_SCALE[c], state);
 			for (size_t n = 0; n < count; n++)
-				if (lattice->valid[start + n] != (state[n] == 0) || (lattice->valid[start + n] && lattice->rgb[c][start + n] != values[n]))
+				if (lattice->valid[start + n] != (state[n] == 0) ||
+				    (lattice->valid[start + n] && lattice->rgb[c][start + n] != values[n]))
 					return false;
 		}
 	return true;
@@ -282,7 +287,8 @@ static void measured_fill(void *user, int channel, size_t start, size_t count, d
 	const struct lattice *lattice = user;
 	for (size_t n = 0; n < count; n++) {
 		const size_t cell = start + n;
-		const bool told = lattice->valid[cell] || lattice->rgb[0][cell] < 0 || lattice->rgb[1][cell] < 0 || lattice->rgb[2][cell] < 0;
+		const bool told =
+			lattice->valid[cell] || lattice->rgb[0][cell] < 0 || lattice->rgb[1][cell] < 0 || lattice->rgb[2][cell] < 0;
 		values[n] = told ? lattice->rgb[channel][cell] / MERL_SCALE[channel] : -1;
 	}
 }

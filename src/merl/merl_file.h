@@ -21,8 +21,9 @@ typedef void merl_seen_fn(void *user, const void *bytes, size_t count);
 struct merl_reading {
 	merl_seen_fn *seen; /* NULL: nobody looks on */
 	void *seen_user;
-	bool any_dims;           /* accept any legal extents */
-	struct carried *carried; /* NULL, or where to put what the file carries (carried.h), unchecked; set on success, the caller frees its bytes */
+	bool any_dims; /* accept any legal extents */
+	struct carried *
+		carried; /* NULL, or where to put what the file carries (carried.h), unchecked; set on success, the caller frees its bytes */
 };
 
 /*

@@ -102,7 +102,8 @@ static bool is_ascii(const char *text)
 bool normal_form_equal(const char *a, const char *b)
 {
 	char x[NORMAL_BYTES], y[NORMAL_BYTES];
-	return !is_ascii(a) && !is_ascii(b) && strcmp(a, b) != 0 && normal_form(a, x, sizeof x) && normal_form(b, y, sizeof y) && !strcmp(x, y);
+	return !is_ascii(a) && !is_ascii(b) && strcmp(a, b) != 0 && normal_form(a, x, sizeof x) && normal_form(b, y, sizeof y) &&
+	       !strcmp(x, y);
 }
 
 void normal_forms_add(struct normal_forms *forms, const char *text, size_t number)

@@ -22,7 +22,7 @@ struct normal_forms {
 	struct normal_form_entry {
 		char *form;
 		size_t number;
-	} *entry;
+	} * entry;
 	size_t count, room;
 	bool sorted;
 };

@@ -8,10 +8,7 @@
 
 #include <string.h>
 
-void sha256_start(struct sha256 *sha)
-{
-	sha256_init(&sha->context);
-}
+void sha256_start(struct sha256 *sha) { sha256_init(&sha->context); }
 
 void sha256_add(void *user, const void *bytes, size_t count)
 {
@@ -19,10 +16,7 @@ void sha256_add(void *user, const void *bytes, size_t count)
 	sha256_update(&sha->context, count, bytes);
 }
 
-void sha256_finish(struct sha256 *sha, uint8_t digest[32])
-{
-	sha256_digest(&sha->context, SHA256_DIGEST_SIZE, digest);
-}
+void sha256_finish(struct sha256 *sha, uint8_t digest[32]) { sha256_digest(&sha->context, SHA256_DIGEST_SIZE, digest); }
 
 void sha256_to_hex(const uint8_t digest[32], char hex[SHA256_HEX_CHARACTERS + 1])
 {

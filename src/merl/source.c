@@ -21,9 +21,11 @@ static void notice(struct source_list *list, enum source_notice kind, const char
 }
 
 /* Tells of a material that cannot be packed. */
-static bp_status refuse(struct source_list *list, const char *name, const char *path, const char *member, const char *reason, bp_error *error)
+static bp_status refuse(struct source_list *list, const char *name, const char *path, const char *member, const char *reason,
+                        bp_error *error)
 {
-	struct source_item item = {.name = source_text_shown(name), .path = strdup(path), .member = member ? source_text_shown(member) : NULL};
+	struct source_item item = {
+		.name = source_text_shown(name), .path = strdup(path), .member = member ? source_text_shown(member) : NULL};
 	char *where = NULL;
 	bp_status status = BP_OK;
 	if (!item.name || !item.path || (member && !item.member) ||
@@ -159,20 +161,15 @@ struct visited {
 	size_t count;
 };
 
-static bp_status path_add(struct source_list *list, const char *path, bool named, struct visited *visited, int depth, bp_error *error);
+static bp_status path_add(struct source_list *list, const char *path, bool named, struct visited *visited, int depth,
+                          bp_error *error);
 
-static int no_dots(const struct dirent *entry)
-{
-	return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-}
+static int no_dots(const struct dirent *entry) { return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0; }
 
-static int by_bytes(const struct dirent **a, const struct dirent **b)
-{
-	return strcmp((*a)->d_name, (*b)->d_name);
-}
+static int by_bytes(const struct dirent **a, const struct dirent **b) { return strcmp((*a)->d_name, (*b)->d_name); }
 
-static bp_status folder_add(struct source_list *list, const char *path, const struct stat *about, struct visited *visited, int depth,
-                            bp_error *error)
+static bp_status folder_add(struct source_list *list, const char *path, const struct stat *about, struct visited *visited,
+                            int depth, bp_error *error)
 {
 	struct dirent **entries = NULL;
 	int count = 0;
@@ -235,7 +232,8 @@ static bp_status thing_add(struct source_list *list, const char *path, bool name
 }
 
 /* One file, folder or other thing; `named`: the user gave this very path. */
-static bp_status path_add(struct source_list *list, const char *path, bool named, struct visited *visited, int depth, bp_error *error)
+static bp_status path_add(struct source_list *list, const char *path, bool named, struct visited *visited, int depth,
+                          bp_error *error)
 {
 	struct stat about, link;
 	char reason[128];
@@ -255,11 +253,13 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 	case SOURCE_KIND_MERL: return item_add(list, path, NULL, (uint64_t)about.st_size, error);
 	case SOURCE_KIND_CONTAINER: return container_add(list, path, named, error);
 	case SOURCE_KIND_FOREIGN:
-		notice(list, SOURCE_DAMAGED, path, "a container of a kind that is not read, or a part of one; unpack it, or pack it as zip or tar");
+		notice(list, SOURCE_DAMAGED, path,
+		       "a container of a kind that is not read, or a part of one; unpack it, or pack it as zip or tar");
 		return BP_OK;
 	case SOURCE_KIND_OTHER:
 		if ((uint64_t)about.st_size == merl_file_bytes(LATTICE_MERL))
-			notice(list, SOURCE_SKIPPED, path, "as large as a MERL file, but not called NAME.binary; rename it, or name it on the command line");
+			notice(list, SOURCE_SKIPPED, path,
+			       "as large as a MERL file, but not called NAME.binary; rename it, or name it on the command line");
 		break;
 	}
 	list->ignored_count++;
@@ -316,8 +316,9 @@ static bp_status items_claim(struct source_list *list, bp_error *error)
 static void input_check(struct source_list *list, const char *path, const struct source_list *before)
 {
 	char reason[160];
-	if (list->item_count > before->item_count || list->stream_count > before->stream_count || list->unwanted_count > before->unwanted_count ||
-	    list->refused_count > before->refused_count || list->damaged_count > before->damaged_count || list->skipped_count > before->skipped_count)
+	if (list->item_count > before->item_count || list->stream_count > before->stream_count ||
+	    list->unwanted_count > before->unwanted_count || list->refused_count > before->refused_count ||
+	    list->damaged_count > before->damaged_count || list->skipped_count > before->skipped_count)
 		return;
 	snprintf(reason, sizeof reason, "no material in it; other files passed over: %zu (MERL files end in .binary)",
 	         list->ignored_count - before->ignored_count);

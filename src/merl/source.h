@@ -50,16 +50,16 @@ struct source_item {
 struct source_list {
 	struct source_item *items; /* in ascending byte order of names */
 	size_t item_count;
-	char **streams;            /* paths, in ascending byte order */
-	bool *stream_named;        /* of each, whether the user gave this very path */
+	char **streams;     /* paths, in ascending byte order */
+	bool *stream_named; /* of each, whether the user gave this very path */
 	size_t stream_count;
-	size_t ignored_count;      /* files that are neither MERL files nor containers by their name */
-	size_t unwanted_count;     /* materials that options->wanted turned down */
+	size_t ignored_count;                /* files that are neither MERL files nor containers by their name */
+	size_t unwanted_count;               /* materials that options->wanted turned down */
 	size_t skipped_count, damaged_count; /* notices of each kind */
-	size_t refused_count;      /* materials that cannot be packed */
+	size_t refused_count;                /* materials that cannot be packed */
 	struct source_options options;
-	void *names;               /* who has which name */
-	const void *told;          /* the stream whose emptiness was told */
+	void *names;      /* who has which name */
+	const void *told; /* the stream whose emptiness was told */
 };
 
 /*
@@ -84,7 +84,8 @@ const struct source_item *source_list_find(const struct source_list *list, const
 bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
                              bool *more, bp_error *error);
 /* An item's strings: copies are made (BP_ERROR_MEMORY: none), and freed. member may be NULL. */
-bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member, bp_error *error);
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member,
+                           bp_error *error);
 void source_item_clear(struct source_item *item);
 
 /* What options->wanted says. */

@@ -56,9 +56,24 @@ enum source_kind source_kind_by_name(const char *path)
 
 enum source_kind source_kind_by_content(const char *path)
 {
-	static const struct { const char *bytes; size_t count, offset; } MAGIC[] = {
-		{"PK\3\4", 4, 0}, {"PK\5\6", 4, 0}, {"\x1f\x8b", 2, 0}, {"\x1f\x9d", 2, 0}, {"BZh", 3, 0}, {"\xfd" "7zXZ", 5, 0},
-		{"\x28\xb5\x2f\xfd", 4, 0}, {"ustar", 5, 257}, {"\x5d\0\0", 3, 0}, {"PK\7\10", 4, 0}, {"7z\xbc\xaf", 4, 0}, {"Rar!", 4, 0},
+	static const struct {
+		const char *bytes;
+		size_t count, offset;
+	} MAGIC[] = {
+		{"PK\3\4", 4, 0},
+		{"PK\5\6", 4, 0},
+		{"\x1f\x8b", 2, 0},
+		{"\x1f\x9d", 2, 0},
+		{"BZh", 3, 0},
+		{"\xfd"
+	     "7zXZ",
+	     5, 0},
+		{"\x28\xb5\x2f\xfd", 4, 0},
+		{"ustar", 5, 257},
+		{"\x5d\0\0", 3, 0},
+		{"PK\7\10", 4, 0},
+		{"7z\xbc\xaf", 4, 0},
+		{"Rar!", 4, 0},
 	};
 	static const unsigned char MERL[12] = {90, 0, 0, 0, 90, 0, 0, 0, 180, 0, 0, 0};
 	char head[512] = {0};

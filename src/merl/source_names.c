@@ -41,9 +41,12 @@ bp_status source_name_make(const char *path, const char *member, const char *fau
 	const char *illegal = name_fault(name, strlen(name));
 	if (illegal && !name_text(name) && member)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "its stem cannot name a material: %s; tell the names' character set with --charset (CP437, SHIFT_JIS, ISO-8859-1 ...)", illegal);
+		                 "its stem cannot name a material: %s; tell the names' character set with --charset (CP437, SHIFT_JIS, "
+		                 "ISO-8859-1 ...)",
+		                 illegal);
 	if (illegal)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "its stem cannot name a material: %s; rename the file", illegal);
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "its stem cannot name a material: %s; rename the file",
+		                 illegal);
 	return fault ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", fault) : BP_OK;
 }
 
@@ -66,11 +69,8 @@ bp_status source_name_claim(void **names, const char *name, const char *path, co
 	claim_free(claim);
 	if (!holder)
 		return error_memory(error, sizeof *claim);
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "two materials named %s: %.300s has the name; rename or leave out one",
-	                 name, (*holder)->where);
+	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+	                 "two materials named %s: %.300s has the name; rename or leave out one", name, (*holder)->where);
 }
 
-void source_names_free(void *names)
-{
-	tdestroy(names, claim_free);
-}
+void source_names_free(void *names) { tdestroy(names, claim_free); }

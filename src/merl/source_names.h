@@ -14,7 +14,8 @@ char *source_text_shown(const char *text);
  * What a file, or a member, would be called. BP_ERROR_BAD_INPUT: it cannot be packed, because the name is illegal or because of
  * `fault` (NULL: none); the name is there all the same.
  */
-bp_status source_name_make(const char *path, const char *member, const char *fault, char name[SOURCE_STEM_BYTES], bp_error *error);
+bp_status source_name_make(const char *path, const char *member, const char *fault, char name[SOURCE_STEM_BYTES],
+                           bp_error *error);
 
 /* Takes the name for a file or member; *names is NULL at first. BP_ERROR_ARGUMENT: another one has it, the message says which. */
 bp_status source_name_claim(void **names, const char *name, const char *path, const char *member, bp_error *error);

@@ -15,7 +15,8 @@ void source_item_clear(struct source_item *item)
 	*item = (struct source_item){0};
 }
 
-bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member, bp_error *error)
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member,
+                           bp_error *error)
 {
 	*item = (struct source_item){.name = strdup(name), .path = strdup(path), .member = member ? strdup(member->path) : NULL};
 	if (!item->name || !item->path || (member && !item->member)) {
@@ -43,8 +44,8 @@ static bool stream_is_named(const struct source_list *list, const char *path)
 }
 
 /* A member that is wanted: taken, or refused with *out filled all the same. */
-static bp_status member_take(struct source_list *list, const char *path, const struct container_member *member, const char *name, bp_status fault,
-                             struct source_item *out, bp_error *error)
+static bp_status member_take(struct source_list *list, const char *path, const struct container_member *member, const char *name,
+                             bp_status fault, struct source_item *out, bp_error *error)
 {
 	bp_status status = fault ? fault : source_name_claim(&list->names, name, path, member->path, error);
 	bp_error memory;
@@ -86,7 +87,8 @@ bp_status source_stream_next(struct source_list *list, const char *path, struct 
 			list->told = tell ? stream : NULL;
 			return !tell    ? BP_OK
 			       : remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", remark)
-			                : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no material in it; other files passed over: %zu (MERL files end in .binary)",
+			                : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+			                            "no material in it; other files passed over: %zu (MERL files end in .binary)",
 			                            container_ignored(stream));
 		}
 		const bp_status fault = source_name_make(path, member.path, member.fault, name, error);

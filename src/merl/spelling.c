@@ -13,10 +13,7 @@ static unsigned char folded(char letter)
 	return byte >= 'A' && byte <= 'Z' ? (unsigned char)(byte + 32) : byte;
 }
 
-static size_t least(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
+static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
 /* Optimal string alignment distance, or `limit` when it is not less. Both lengths <= SPELLING_BYTES_MAX. */
 static size_t spelling_distance(const char *a, const char *b, size_t limit)
@@ -89,7 +86,4 @@ void name_guess_offer(struct name_guess *guess, const char *candidate)
 	}
 }
 
-const char *name_guess_best(const struct name_guess *guess)
-{
-	return guess->best[0] ? guess->best : NULL;
-}
+const char *name_guess_best(const struct name_guess *guess) { return guess->best[0] ? guess->best : NULL; }

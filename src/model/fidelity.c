@@ -8,8 +8,8 @@
 #include "fidelity_kernels.h"
 
 /* Adds the cells `valid` of slice i of all tables to their totals. */
-static void slice_add(const struct lattice *truth, const struct expansion *tables, uint32_t count, uint32_t i, const uint8_t *valid,
-                      const float *cosine, struct fidelity_sums *total)
+static void slice_add(const struct lattice *truth, const struct expansion *tables, uint32_t count, uint32_t i,
+                      const uint8_t *valid, const float *cosine, struct fidelity_sums *total)
 {
 	const size_t slice = (size_t)truth->dims.theta_d * truth->dims.phi_d, at = i * slice;
 	struct fidelity_sums sums[LAYERS_MAX];
@@ -41,7 +41,8 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
 	if (count > LAYERS_MAX)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: %u tables; %d at most", count, LAYERS_MAX);
 	for (uint32_t t = 0; t < count; t++)
-		if (dims.theta_h != tables[t].dims.theta_h || dims.theta_d != tables[t].dims.theta_d || dims.phi_d != tables[t].dims.phi_d)
+		if (dims.theta_h != tables[t].dims.theta_h || dims.theta_d != tables[t].dims.theta_d ||
+		    dims.phi_d != tables[t].dims.phi_d)
 			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: the two tables have different extents");
 	if (!truth->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "fidelity: no valid cell to compare");
@@ -63,7 +64,8 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
 	const double log10_of_2 = 0.30102999566398120;
 	for (uint32_t t = 0; t < count; t++) {
 		out[t].log_rmse = log10_of_2 * sqrt(total[t].log_squares / n);
-		out[t].seen_log_rmse = n_seen > 0 ? log10_of_2 * sqrt(fmax(total[t].log_squares - hidden[t].log_squares, 0) / n_seen) : out[t].log_rmse;
+		out[t].seen_log_rmse =
+			n_seen > 0 ? log10_of_2 * sqrt(fmax(total[t].log_squares - hidden[t].log_squares, 0) / n_seen) : out[t].log_rmse;
 		out[t].cube_root_rmse = sqrt(total[t].cube_root_squares / n);
 		out[t].largest_relative = total[t].largest_relative < DBL_MAX ? total[t].largest_relative : DBL_MAX;
 	}

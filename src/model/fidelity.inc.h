@@ -62,7 +62,8 @@ static inline void KERNEL(fidelity_prepare)(const double *b, const uint8_t *vali
  *
  * Both are polynomials of least relative error on these ranges: 1e-15, 2e-15.
  */
-static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *difference, struct KERNEL(fidelity_squares) *to)
+static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *difference,
+                                          struct KERNEL(fidelity_squares) *to)
 {
 	lanes4 logs = {0, 0, 0, 0}, cubes = {0, 0, 0, 0};
 

@@ -8,7 +8,7 @@
 #include "model/math/kernels.h"
 
 struct fidelity_sums {
-	double log_squares;      /* of log2 ratios */
+	double log_squares; /* of log2 ratios */
 	double cube_root_squares;
 	double largest_relative;
 };
@@ -25,8 +25,8 @@ struct fidelity_kernels {
 	 * Adds the n cells of one channel of one theta_h slice to the sums of every table: b measured, unit * e decoded, in 1/sr;
 	 * cosine >= 0; cells with valid = 0 add nothing.
 	 */
-	void (*fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n, const struct fidelity_table *tables,
-	                       size_t count);
+	void (*fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n,
+	                       const struct fidelity_table *tables, size_t count);
 };
 
 extern const struct fidelity_kernels fidelity_kernels_plain, fidelity_kernels_avx2;

@@ -11,9 +11,9 @@ enum { LAYERS_MAX = 16 };
 
 struct fit_options {
 	enum profile profile;
-	uint32_t budget_bytes; /* largest record, everything included; 60,400 unless told */
-	double max_error;      /* > 0: instead, the smallest record whose log RMSE is at most this */
-	int effort;            /* 1..9, 5 unless told */
+	uint32_t budget_bytes;     /* largest record, everything included; 60,400 unless told */
+	double max_error;          /* > 0: instead, the smallest record whose log RMSE is at most this */
+	int effort;                /* 1..9, 5 unless told */
 	const struct watch *watch; /* NULL: nobody; not a part of what a record says */
 };
 

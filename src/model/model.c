@@ -14,8 +14,9 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 	bp_status status;
 
 	if (!lattice_dims_legal(lattice->dims))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a lattice of %u x %u x %u cells: 4 to %d each, at most %d in all",
-		                 lattice->dims.theta_h, lattice->dims.theta_d, lattice->dims.phi_d, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+		                 "a lattice of %u x %u x %u cells: 4 to %d each, at most %d in all", lattice->dims.theta_h,
+		                 lattice->dims.theta_d, lattice->dims.phi_d, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
 	if (!lattice->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: every value is negative, NaN or infinite");
 	model = calloc(1, sizeof *model);
@@ -33,8 +34,7 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 		model->layer_count = 1; /* the encoder cuts layers */
 		status = spectral_fit(lattice, options, &model->spectral, model->colour, error);
 		break;
-	default:
-		status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
+	default: status = error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
 	}
 	stage_enter(STAGE_REST);
 	if (status)
@@ -58,17 +58,15 @@ bp_status model_expand(const struct model *model, uint32_t layers, struct expans
 	const struct lattice_dims a = model->dims, b = out->dims;
 
 	if (a.theta_h != b.theta_h || a.theta_d != b.theta_d || a.phi_d != b.phi_d)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the table has %u x %u x %u cells, the model %u x %u x %u", b.theta_h,
-		                 b.theta_d, b.phi_d, a.theta_h, a.theta_d, a.phi_d);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the table has %u x %u x %u cells, the model %u x %u x %u",
+		                 b.theta_h, b.theta_d, b.phi_d, a.theta_h, a.theta_d, a.phi_d);
 	if (!layers || layers > model->layer_count)
 		layers = model->layer_count;
 	switch (model->profile) {
 	case PROFILE_PAPER:
 		/* A model of which all layers are wanted shows what it holds, whichever layers that came in. */
 		return paper_expand(model->paper, model->colour, layers < model->layer_count ? layers : PAPER_LAYERS, out, error);
-	case PROFILE_SPECTRAL:
-		return spectral_expand(model->spectral, layers, out, error);
-	default:
-		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)model->profile);
+	case PROFILE_SPECTRAL: return spectral_expand(model->spectral, layers, out, error);
+	default: return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)model->profile);
 	}
 }

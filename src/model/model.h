@@ -21,7 +21,7 @@ struct model {
 	struct lattice_dims dims;
 	double horizon_limit; /* lattice_horizon_limit of the source */
 	struct colour_fit colour[3];
-	uint32_t layer_count; /* 1..LAYERS_MAX; a decoded model has as many as were loaded */
+	uint32_t layer_count;            /* 1..LAYERS_MAX; a decoded model has as many as were loaded */
 	struct paper_model *paper;       /* PROFILE_PAPER, else NULL */
 	struct spectral_model *spectral; /* PROFILE_SPECTRAL, else NULL */
 };

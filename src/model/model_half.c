@@ -27,8 +27,9 @@ bp_status model_expand_half(const struct model *model, uint32_t layers, struct e
 
 	if (!model_has_half(model->dims, &half) || half.theta_h != out->dims.theta_h || half.theta_d != out->dims.theta_d ||
 	    half.phi_d != out->dims.phi_d)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%u x %u x %u cells are not half of %u x %u x %u", out->dims.theta_h,
-		                 out->dims.theta_d, out->dims.phi_d, model->dims.theta_h, model->dims.theta_d, model->dims.phi_d);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%u x %u x %u cells are not half of %u x %u x %u",
+		                 out->dims.theta_h, out->dims.theta_d, out->dims.phi_d, model->dims.theta_h, model->dims.theta_d,
+		                 model->dims.phi_d);
 	if (!layers || layers > model->layer_count)
 		layers = model->layer_count;
 	if (model->profile == PROFILE_SPECTRAL && model->spectral && !model->spectral->coefficient[0])

@@ -17,10 +17,7 @@ static f32x4 load(const float *from)
 	return to;
 }
 
-static void store(float *to, f32x4 from)
-{
-	memcpy(to, &from, sizeof from);
-}
+static void store(float *to, f32x4 from) { memcpy(to, &from, sizeof from); }
 
 /* Rows of x y z, four at a time: compilers turn these shuffles into two or three instructions each, a plain loop into many more. */
 static void rows_gather(const float *from, size_t count, struct vectors *to)
@@ -67,11 +64,13 @@ static void scatter(const struct vectors *from, size_t count, float *to)
 			to[k] = from->at[k][n];
 }
 
-#define COMPONENTS(v) (const float *const[]){(v).at[0], (v).at[1], (v).at[2]}
-#define COMPONENTS_OUT(v) (float *const[]){(v).at[0], (v).at[1], (v).at[2]}
+#define COMPONENTS(v) \
+	(const float *const[]) { (v).at[0], (v).at[1], (v).at[2] }
+#define COMPONENTS_OUT(v) \
+	(float *const[]) { (v).at[0], (v).at[1], (v).at[2] }
 
-void strided_evaluate(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column, const float *wo,
-                      ptrdiff_t wo_row, ptrdiff_t wo_column, float *rgb)
+void strided_evaluate(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column,
+                      const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column, float *rgb)
 {
 	struct vectors in, out, value;
 	for (size_t n = 0; n < count; n += BLOCK) {
@@ -83,8 +82,8 @@ void strided_evaluate(const bp_material *material, size_t count, const float *wi
 	}
 }
 
-void strided_sample(const bp_material *material, size_t count, const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column, const float *u,
-                    ptrdiff_t u_row, ptrdiff_t u_column, float *wi, float *pdf)
+void strided_sample(const bp_material *material, size_t count, const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column,
+                    const float *u, ptrdiff_t u_row, ptrdiff_t u_column, float *wi, float *pdf)
 {
 	struct vectors out, number, in;
 	for (size_t n = 0; n < count; n += BLOCK) {
@@ -96,8 +95,8 @@ void strided_sample(const bp_material *material, size_t count, const float *wo, 
 	}
 }
 
-void strided_pdf(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column, const float *wo,
-                 ptrdiff_t wo_row, ptrdiff_t wo_column, float *pdf)
+void strided_pdf(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column,
+                 const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column, float *pdf)
 {
 	struct vectors in, out;
 	for (size_t n = 0; n < count; n += BLOCK) {

@@ -8,12 +8,12 @@
 
 #include "brdfpack.h"
 
-void strided_evaluate(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column, const float *wo,
-                      ptrdiff_t wo_row, ptrdiff_t wo_column, float *rgb);
-void strided_sample(const bp_material *material, size_t count, const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column, const float *u,
-                    ptrdiff_t u_row, ptrdiff_t u_column, float *wi, float *pdf);
-void strided_pdf(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column, const float *wo,
-                 ptrdiff_t wo_row, ptrdiff_t wo_column, float *pdf);
+void strided_evaluate(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column,
+                      const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column, float *rgb);
+void strided_sample(const bp_material *material, size_t count, const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column,
+                    const float *u, ptrdiff_t u_row, ptrdiff_t u_column, float *wi, float *pdf);
+void strided_pdf(const bp_material *material, size_t count, const float *wi, ptrdiff_t wi_row, ptrdiff_t wi_column,
+                 const float *wo, ptrdiff_t wo_row, ptrdiff_t wo_column, float *pdf);
 void strided_albedo(const bp_material *material, size_t count, const float *theta, float *rgb);
 
 #endif

@@ -96,10 +96,7 @@ static void stretch_draw(struct canvas *canvas, const double a[2], const double 
 		}
 }
 
-static bool point_drawn(const double point[2])
-{
-	return isfinite(point[0]) && isfinite(point[1]);
-}
+static bool point_drawn(const double point[2]) { return isfinite(point[0]) && isfinite(point[1]); }
 
 void canvas_line(struct canvas *canvas, const double (*points)[2], size_t count, double width, struct colour colour)
 {
@@ -128,8 +125,8 @@ static void text_escape(FILE *out, const char *text)
 	}
 }
 
-void canvas_text(struct canvas *canvas, double x, double y, double height, enum anchor anchor, bool upwards,
-                 struct colour colour, const char *text)
+void canvas_text(struct canvas *canvas, double x, double y, double height, enum anchor anchor, bool upwards, struct colour colour,
+                 const char *text)
 {
 	static const char *const ANCHORS[] = {"start", "middle", "end"};
 	if (canvas->svg) {
@@ -175,8 +172,7 @@ static void base64_write(FILE *out, const uint8_t *bytes, size_t count)
 	}
 }
 
-void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t width, uint32_t height,
-                    const struct picture *picture)
+void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t width, uint32_t height, const struct picture *picture)
 {
 	if (canvas->svg) {
 		uint8_t *bytes;
@@ -186,7 +182,8 @@ void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t widt
 			return;
 		}
 		fprintf(canvas->text,
-		        "<image x=\"%u\" y=\"%u\" width=\"%u\" height=\"%u\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" "
+		        "<image x=\"%u\" y=\"%u\" width=\"%u\" height=\"%u\" preserveAspectRatio=\"none\" "
+		        "style=\"image-rendering:pixelated\" "
 		        "href=\"data:image/png;base64,",
 		        x, y, width, height);
 		base64_write(canvas->text, bytes, count);

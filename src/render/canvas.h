@@ -26,8 +26,8 @@ void canvas_rectangle(struct canvas *canvas, double x, double y, double width, d
 void canvas_line(struct canvas *canvas, const double (*points)[2], size_t count, double width, struct colour colour);
 
 /* Text of `height` pixels (multiples of 7 look best in PNG) with its baseline at y; upwards: turned a quarter to the left. */
-void canvas_text(struct canvas *canvas, double x, double y, double height, enum anchor anchor, bool upwards,
-                 struct colour colour, const char *text);
+void canvas_text(struct canvas *canvas, double x, double y, double height, enum anchor anchor, bool upwards, struct colour colour,
+                 const char *text);
 
 /* A picture stretched over a rectangle of whole pixels, without smoothing. */
 void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t width, uint32_t height,

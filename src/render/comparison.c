@@ -51,8 +51,8 @@ bp_status comparison_measure(struct comparison_plans *plans, const struct lattic
 	memset(&result, 0, sizeof result); /* padding too: rows travel between processes as bytes */
 	if (!dims_equal(a, b))
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d, a.phi_d,
-		                 b.theta_h, b.theta_d, b.phi_d);
+		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d,
+		                 a.phi_d, b.theta_h, b.theta_d, b.phi_d);
 	if (!truth->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the reference has no valid cell");
 	if ((status = comparison_plans_make(plans, truth->dims, error)) != BP_OK)

@@ -17,8 +17,8 @@ struct comparison {
 	struct psnr psnr[LIGHTING_COUNT]; /* of the lightings that were asked for; 0 otherwise */
 	double itp[LIGHTING_COUNT];       /* mean dE ITP, likewise */
 	struct fidelity fidelity;
-	struct worst_cell worst;          /* where fidelity.largest_relative is */
-	struct energy measured, decoded;  /* both with invalid cells as 0 */
+	struct worst_cell worst;         /* where fidelity.largest_relative is */
+	struct energy measured, decoded; /* both with invalid cells as 0 */
 };
 
 /*

@@ -41,8 +41,7 @@ bp_status density_source_measured(const struct lattice *lattice, struct density_
 	return BP_OK;
 }
 
-bp_status density_source_decoded(const struct expansion *table, const uint8_t *valid, struct density_source *out,
-                                 bp_error *error)
+bp_status density_source_decoded(const struct expansion *table, const uint8_t *valid, struct density_source *out, bp_error *error)
 {
 	size_t cells = lattice_cells(table->dims);
 	struct density_source source;

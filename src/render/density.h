@@ -9,7 +9,7 @@
 /* Planes of 1/sr over a lattice, and which cells count. */
 struct density_source {
 	struct lattice_dims dims;
-	float *mean;    /* mean of the three channels, per cell; 0 where invalid */
+	float *mean; /* mean of the three channels, per cell; 0 where invalid */
 	uint8_t *valid;
 };
 

@@ -11,10 +11,7 @@ static double quantizer(double light)
 	return pow((3424.0 / 4096 + 2413.0 / 128 * y) / (1 + 2392.0 / 128 * y), 2523.0 / 32);
 }
 
-static double product(const double row[3], const double v[3])
-{
-	return row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
-}
+static double product(const double row[3], const double v[3]) { return row[0] * v[0] + row[1] * v[1] + row[2] * v[2]; }
 
 void itp_of(const double rgb[3], double itp[3])
 {
@@ -38,10 +35,7 @@ double itp_difference(const double a[3], const double b[3])
 	return 720 * sqrt(squares);
 }
 
-static double clamped(double x)
-{
-	return x < 0 ? 0 : x > 1 ? 1 : x;
-}
+static double clamped(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 
 bp_status itp_mean(const struct sphere_image *reference, const struct sphere_image *estimate, double *out, bp_error *error)
 {

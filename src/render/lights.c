@@ -74,10 +74,7 @@ int lights_make(enum lighting lighting, struct light *lights)
 	return 0;
 }
 
-const char *lighting_name(enum lighting lighting)
-{
-	return NAMES[lighting];
-}
+const char *lighting_name(enum lighting lighting) { return NAMES[lighting]; }
 
 bool lighting_find(const char *name, enum lighting *out)
 {

@@ -20,8 +20,8 @@ enum lighting { LIGHTING_KEY, LIGHTING_ENV, LIGHTING_POINT, LIGHTING_COUNT };
 enum { LIGHTS_MAX = 400 };
 
 struct light {
-	double at[3];   /* directional: unit vector towards the light; point: its position, outside the sphere */
-	double weight;  /* directional: irradiance at normal incidence; point: intensity, divided by the squared distance */
+	double at[3];  /* directional: unit vector towards the light; point: its position, outside the sphere */
+	double weight; /* directional: irradiance at normal incidence; point: intensity, divided by the squared distance */
 	bool is_point;
 };
 

@@ -75,8 +75,8 @@ bp_status lookup_table_measured(const struct lattice *lattice, struct lookup_tab
 	return BP_OK;
 }
 
-bp_status lookup_table_decoded(const struct expansion *expansion, const uint8_t *valid, double unit,
-                               struct lookup_table *out, bp_error *error)
+bp_status lookup_table_decoded(const struct expansion *expansion, const uint8_t *valid, double unit, struct lookup_table *out,
+                               bp_error *error)
 {
 	struct lattice_dims dims = expansion->dims;
 	unit = unit > 0 ? unit : expansion->unit;
@@ -131,15 +131,9 @@ struct angle_tables *angle_tables_make(void)
 }
 
 /* fmin and fmax are calls, for the sake of NaN; there is none here. */
-static double lesser(double a, double b)
-{
-	return a < b ? a : b;
-}
+static double lesser(double a, double b) { return a < b ? a : b; }
 
-static double greater(double a, double b)
-{
-	return a > b ? a : b;
-}
+static double greater(double a, double b) { return a > b ? a : b; }
 
 static double table_at(const double *table, double x)
 {

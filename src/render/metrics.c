@@ -15,7 +15,8 @@ bp_status metrics_psnr(const struct sphere_image *reference, const struct sphere
 			continue;
 		for (int c = 0; c < 3; c++) {
 			double e = estimate->rgb[3 * n + (size_t)c];
-			double a = image_srgb(reference->rgb[3 * n + (size_t)c] * exposure), b = isfinite(e) ? image_srgb(e * exposure) : 1 - a;
+			double a = image_srgb(reference->rgb[3 * n + (size_t)c] * exposure),
+				   b = isfinite(e) ? image_srgb(e * exposure) : 1 - a;
 			double d = round(255 * a) - round(255 * b);
 			sum += (a - b) * (a - b);
 			sum_eight += d * d;
@@ -47,6 +48,12 @@ void metrics_worst_cell(const struct lattice *truth, const struct expansion *tab
 	uint32_t k = (uint32_t)(worst % dims.phi_d), j = (uint32_t)(worst / dims.phi_d % dims.theta_d);
 	uint32_t i = (uint32_t)(worst / dims.phi_d / dims.theta_d);
 	double root = (i + 0.5) / dims.theta_h;
-	*out = (struct worst_cell){.value = largest, .i = i, .j = j, .k = k, .channel = channel, .theta_h = root * root * 90,
-	                           .theta_d = 90 * (j + 0.5) / dims.theta_d, .phi_d = 180 * (k + 0.5) / dims.phi_d};
+	*out = (struct worst_cell){.value = largest,
+	                           .i = i,
+	                           .j = j,
+	                           .k = k,
+	                           .channel = channel,
+	                           .theta_h = root * root * 90,
+	                           .theta_d = 90 * (j + 0.5) / dims.theta_d,
+	                           .phi_d = 180 * (k + 0.5) / dims.phi_d};
 }

@@ -26,10 +26,7 @@ void picture_free(struct picture *picture)
 	}
 }
 
-static uint8_t to_byte(double x)
-{
-	return (uint8_t)(fmin(1, fmax(0, x)) * 255 + 0.5);
-}
+static uint8_t to_byte(double x) { return (uint8_t)(fmin(1, fmax(0, x)) * 255 + 0.5); }
 
 void picture_place(struct picture *picture, uint32_t x, const struct sphere_image *image, double exposure)
 {
@@ -82,7 +79,12 @@ bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp
 }
 
 /* Behind signature and header of a PNG file: who made it, as a text chunk (length, type, text, CRC32). */
-#define PNG_MARK "\0\0\0\x11" "tEXt" "Software\0" "brdfpack" "\xf2\x0c\xf4\x0d"
+#define PNG_MARK \
+	"\0\0\0\x11" \
+	"tEXt" \
+	"Software\0" \
+	"brdfpack" \
+	"\xf2\x0c\xf4\x0d"
 enum { PNG_HEAD_BYTES = 33, PNG_MARK_BYTES = sizeof PNG_MARK - 1 };
 
 bool picture_is_ours(const uint8_t *head, size_t count)

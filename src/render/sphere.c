@@ -32,8 +32,8 @@ struct sphere_plan {
  *
  * l_z > -1 holds wherever both n.l > 0 and n_z > 0.
  */
-static struct place pixel_place(const struct angle_tables *angles, struct lattice_dims dims, const double n[3],
-                                const double l[3], double cosine, double weight)
+static struct place pixel_place(const struct angle_tables *angles, struct lattice_dims dims, const double n[3], const double l[3],
+                                double cosine, double weight)
 {
 	double cos_d = sqrt(fmax(1e-24, 1 + l[2]) * 0.5), cos_h = (cosine + n[2]) / (2 * cos_d);
 	return place_make(angles, dims, cos_h, cos_d, n[1] * l[0] - n[0] * l[1], (n[2] - cosine) * cos_d, cosine * weight);
@@ -51,10 +51,7 @@ static bool pixel_normal(uint32_t size, uint32_t x, uint32_t y, double normal[3]
 	return true;
 }
 
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /* Direction and irradiance of a light at the point of the sphere whose normal is n. */
 static double light_reach(const struct light *light, const double n[3], double to[3])
@@ -158,10 +155,7 @@ void sphere_plan_free(struct sphere_plan *plan)
 	}
 }
 
-size_t sphere_plan_places(const struct sphere_plan *plan)
-{
-	return plan->place_count;
-}
+size_t sphere_plan_places(const struct sphere_plan *plan) { return plan->place_count; }
 
 void sphere_plan_render(const struct sphere_plan *plan, const struct lookup_table *const *tables, int count,
                         struct sphere_image *const *images)

@@ -15,8 +15,8 @@ enum {
 struct command {
 	const char *name;
 	int (*run)(const struct command *self, int argc, char **argv); /* argv[0] is the command's name; returns an exit code */
-	const char *description; /* one line for `brdfpack help` */
-	const char *usage;       /* what `brdfpack NAME --help` prints, from "Usage: brdfpack NAME ..." on */
+	const char *description;                                       /* one line for `brdfpack help` */
+	const char *usage; /* what `brdfpack NAME --help` prints, from "Usage: brdfpack NAME ..." on */
 };
 
 #endif

@@ -32,7 +32,8 @@ static void limits_of(const char *folder, struct cores_limits *limits)
 	double cores = INFINITY, bytes = INFINITY;
 	if (numbers_read(folder, "cpu.max", &a, &b) == 2 && b > 0) /* version 2: "QUOTA PERIOD" or "max PERIOD", microseconds */
 		cores = a / b;
-	if (numbers_read(folder, "cpu.cfs_quota_us", &a, &b) >= 1 && numbers_read(folder, "cpu.cfs_period_us", &c, &d) >= 1 && a > 0 && c > 0)
+	if (numbers_read(folder, "cpu.cfs_quota_us", &a, &b) >= 1 && numbers_read(folder, "cpu.cfs_period_us", &c, &d) >= 1 &&
+	    a > 0 && c > 0)
 		cores = fmin(cores, a / c); /* version 1 */
 	if (numbers_read(folder, "memory.max", &a, &b) >= 1)
 		bytes = a;
@@ -81,7 +82,8 @@ struct cores_limits cores_limits_read(const char *root, const char *groups)
 			limits_up(root, second, &limits);
 			continue;
 		}
-		for (char *rest = NULL, *controller = strtok_r(first + 1, ",", &rest); controller; controller = strtok_r(NULL, ",", &rest))
+		for (char *rest = NULL, *controller = strtok_r(first + 1, ",", &rest); controller;
+		     controller = strtok_r(NULL, ",", &rest))
 			if (!strcmp(controller, "cpu") || !strcmp(controller, "memory")) {
 				char mount[PATH_BYTES];
 				if ((size_t)snprintf(mount, sizeof mount, "%s/%s", root, controller) < sizeof mount)

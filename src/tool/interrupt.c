@@ -37,7 +37,4 @@ bp_status interrupt_install(int *wake_fd, bp_error *error)
 	return BP_OK;
 }
 
-int interrupt_signal(void)
-{
-	return noted;
-}
+int interrupt_signal(void) { return noted; }

@@ -60,10 +60,7 @@ static void level_open(struct json *json, const char *key, char open, char close
 	json->level[json->depth++].filled = false;
 }
 
-struct json json_begin(FILE *out, bool indent)
-{
-	return (struct json){.out = out, .indent = indent};
-}
+struct json json_begin(FILE *out, bool indent) { return (struct json){.out = out, .indent = indent}; }
 
 void json_finish(struct json *json)
 {
@@ -71,15 +68,9 @@ void json_finish(struct json *json)
 	putc('\n', json->out);
 }
 
-void json_object(struct json *json, const char *key)
-{
-	level_open(json, key, '{', '}');
-}
+void json_object(struct json *json, const char *key) { level_open(json, key, '{', '}'); }
 
-void json_array(struct json *json, const char *key)
-{
-	level_open(json, key, '[', ']');
-}
+void json_array(struct json *json, const char *key) { level_open(json, key, '[', ']'); }
 
 void json_close(struct json *json)
 {

@@ -19,17 +19,17 @@
 
 /* A new command is one cmd_NAME.c and one line here, in the order `help` shows them. */
 #define COMMANDS(X) \
-	X(build)    \
-	X(list)     \
-	X(extract)  \
-	X(verify)   \
-	X(subset)   \
-	X(merge)    \
-	X(recover)  \
-	X(synth)    \
-	X(render)   \
-	X(compare)  \
-	X(show)     \
+	X(build) \
+	X(list) \
+	X(extract) \
+	X(verify) \
+	X(subset) \
+	X(merge) \
+	X(recover) \
+	X(synth) \
+	X(render) \
+	X(compare) \
+	X(show) \
 	X(report)
 
 #define DECLARE(name) extern const struct command command_##name;
@@ -53,7 +53,8 @@ static void command_unknown(const char *name)
 	for (size_t i = 0; commands[i]; i++)
 		name_guess_offer(&guess, commands[i]->name);
 	const char *best = name_guess_best(&guess);
-	report_text("unknown command '%s'%s%s%s; `brdfpack help` lists the commands", name, best ? " (did you mean '" : "", best ? best : "", best ? "'?)" : "");
+	report_text("unknown command '%s'%s%s%s; `brdfpack help` lists the commands", name, best ? " (did you mean '" : "",
+	            best ? best : "", best ? "'?)" : "");
 }
 
 static void help_print(FILE *out)

@@ -10,11 +10,11 @@
 struct material {
 	const char *path;
 	char name[RECORD_NAME_BYTES_MAX + 1];
-	bool measured;            /* from a MERL file: lattice is there; otherwise head, model and table are */
+	bool measured; /* from a MERL file: lattice is there; otherwise head, model and table are */
 	struct lattice lattice;
 	struct record_head head;
-	struct model *model;      /* all layers */
-	struct expansion table;   /* of the model */
+	struct model *model;    /* all layers */
+	struct expansion table; /* of the model */
 };
 
 /*

@@ -21,10 +21,7 @@ bool material_name_form(const char *written, unsigned form, char name[BP_NAME_BY
 	return true;
 }
 
-bool material_name_bare(const char *written, char name[BP_NAME_BYTES_MAX + 1])
-{
-	return material_name_form(written, 3, name);
-}
+bool material_name_bare(const char *written, char name[BP_NAME_BYTES_MAX + 1]) { return material_name_form(written, 3, name); }
 
 bp_status material_name_find(const bp_archive *archive, const char *written, uint64_t *index, bp_error *error)
 {

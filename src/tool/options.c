@@ -20,7 +20,8 @@ static bool operands_check(const struct command *command, int argc, char **argv)
 		return true;
 	for (int n = optind; n < argc; n++)
 		if (!strcmp(argv[n], "-")) {
-			report_usage(command, "'-': standard input cannot be read, give a file's name ('./-' is a file called so; '-- -' a material)");
+			report_usage(command,
+			             "'-': standard input cannot be read, give a file's name ('./-' is a file called so; '-- -' a material)");
 			return false;
 		}
 	return true;
@@ -49,20 +50,16 @@ int options_next(const struct command *command, int argc, char **argv, const cha
 		}
 	}
 	if (option >= 0 && option != '?' && option != ':' && optarg && !strcmp(optarg, "-")) {
-		report_usage(command, "'-' after '%s%s': standard input and output cannot be had, give a file's name ('./-' is a file called so)",
+		report_usage(command,
+		             "'-' after '%s%s': standard input and output cannot be had, give a file's name ('./-' is a file called so)",
 		             index >= 0 ? "--" : "", index >= 0 ? all_names[index].name : (const char[]){'-', (char)option, '\0'});
 		return OPTIONS_WRONG;
 	}
 	switch (option) {
-	case -1:
-		return operands_check(command, argc, argv) ? OPTIONS_END : OPTIONS_WRONG;
+	case -1: return operands_check(command, argc, argv) ? OPTIONS_END : OPTIONS_WRONG;
 	case OPTION_HELP:
-	case 'h':
-		usage_print(stdout, command->usage);
-		return OPTIONS_HELPED;
-	case ':':
-		report_usage(command, "option '%s' needs a value", word);
-		return OPTIONS_WRONG;
+	case 'h': usage_print(stdout, command->usage); return OPTIONS_HELPED;
+	case ':': report_usage(command, "option '%s' needs a value", word); return OPTIONS_WRONG;
 	case '?':
 		if (!strncmp(word, "--", 2) && strchr(word, '=') && optopt)
 			report_usage(command, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
@@ -71,15 +68,11 @@ int options_next(const struct command *command, int argc, char **argv, const cha
 		else
 			report_usage(command, "unknown option '%s'", word);
 		return OPTIONS_WRONG;
-	default:
-		return option;
+	default: return option;
 	}
 }
 
-int options_exit_code(int option)
-{
-	return option == OPTIONS_HELPED ? EXIT_OK : EXIT_USAGE;
-}
+int options_exit_code(int option) { return option == OPTIONS_HELPED ? EXIT_OK : EXIT_USAGE; }
 
 static bool range_refuse(const struct command *command, const char *option, const char *text, int64_t least, int64_t most)
 {
@@ -111,14 +104,13 @@ bool option_integer(const struct command *command, const char *option, const cha
 	return true;
 }
 
-bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most,
-                  int64_t *out)
+bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most, int64_t *out)
 {
 	static const struct {
 		const char *suffix;
 		int64_t factor;
-	} units[] = {{"", 1}, {"B", 1}, {"k", 1000}, {"kB", 1000}, {"K", 1000}, {"KB", 1000}, {"Ki", 1024}, {"KiB", 1024},
-	             {"M", 1000000}, {"MB", 1000000}, {"Mi", 1048576}, {"MiB", 1048576}};
+	} units[] = {{"", 1},      {"B", 1},      {"k", 1000},    {"kB", 1000},    {"K", 1000},     {"KB", 1000},
+	             {"Ki", 1024}, {"KiB", 1024}, {"M", 1000000}, {"MB", 1000000}, {"Mi", 1048576}, {"MiB", 1048576}};
 	int64_t value;
 	const char *rest;
 	if (!digits_parse(text, &value, &rest))
@@ -135,8 +127,7 @@ bool option_bytes(const struct command *command, const char *option, const char 
 	return range_refuse(command, option, text, least, most);
 }
 
-bool option_number(const struct command *command, const char *option, const char *text, double least, double most,
-                   double *out)
+bool option_number(const struct command *command, const char *option, const char *text, double least, double most, double *out)
 {
 	char *end = NULL;
 	bool starts_well = isdigit((unsigned char)text[0]) || text[0] == '.';

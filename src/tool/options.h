@@ -37,10 +37,8 @@ int options_exit_code(int option);
  */
 bool option_integer(const struct command *command, const char *option, const char *text, int64_t least, int64_t most,
                     int64_t *out);
-bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most,
-                  int64_t *out);
-bool option_number(const struct command *command, const char *option, const char *text, double least, double most,
-                   double *out);
+bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most, int64_t *out);
+bool option_number(const struct command *command, const char *option, const char *text, double least, double most, double *out);
 
 /*
  * Checks what -o names, a picture: it ends in .png or in `other`, and *is_other tells which; otherwise a usage message and

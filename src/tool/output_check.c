@@ -19,7 +19,8 @@ bp_status output_check_input(const char *path, const char *input, bp_error *erro
 	struct stat output, source;
 	if (stat(path, &output) != 0 || stat(input, &source) != 0 || output.st_dev != source.st_dev || output.st_ino != source.st_ino)
 		return BP_OK;
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: is one of the inputs%s%s%s; give another output, or --force to replace it", path,
+	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+	                 "%s: is one of the inputs%s%s%s; give another output, or --force to replace it", path,
 	                 strcmp(path, input) ? " (" : "", strcmp(path, input) ? input : "", strcmp(path, input) ? ")" : "");
 }
 
@@ -40,7 +41,8 @@ static bool is_ours(const char *path, enum output_kind kind)
 	return got >= ARCHIVE_MAGIC_BYTES && memcmp(head, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES) == 0;
 }
 
-bp_status output_check_path(const char *path, enum output_kind kind, bool force, const char *const *inputs, size_t count, bp_error *error)
+bp_status output_check_path(const char *path, enum output_kind kind, bool force, const char *const *inputs, size_t count,
+                            bp_error *error)
 {
 	static const char *const MADE[] = {"archive", "picture that brdfpack drew", "page that brdfpack made"};
 	struct output_file file;
@@ -54,8 +56,8 @@ bp_status output_check_path(const char *path, enum output_kind kind, bool force,
 		return status;
 	output_file_discard(&file);
 	if (!force && stat(path, &about) == 0 && !is_ours(path, kind))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: is there already, and is no %s; give another output, or --force to replace it",
-		                 path, MADE[kind]);
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+		                 "%s: is there already, and is no %s; give another output, or --force to replace it", path, MADE[kind]);
 	return BP_OK;
 }
 
@@ -70,5 +72,6 @@ bool output_check(const char *path, enum output_kind kind, bool force, const cha
 
 void output_taken_report(const char *path)
 {
-	report_text("%s: is there already, and differs from what would be written; give another folder, or --force to replace it", path);
+	report_text("%s: is there already, and differs from what would be written; give another folder, or --force to replace it",
+	            path);
 }

@@ -22,7 +22,8 @@ enum output_kind { OUTPUT_KIND_ARCHIVE, OUTPUT_KIND_PICTURE, OUTPUT_KIND_PAGE };
 bool output_check(const char *path, enum output_kind kind, bool force, const char *const *inputs, size_t count);
 
 /* The same, with the reason in *error instead of a message. */
-bp_status output_check_path(const char *path, enum output_kind kind, bool force, const char *const *inputs, size_t count, bp_error *error);
+bp_status output_check_path(const char *path, enum output_kind kind, bool force, const char *const *inputs, size_t count,
+                            bp_error *error);
 
 /* For commands that learn later what they read: BP_ERROR_ARGUMENT when `input` is the same file as `path` (device and inode). */
 bp_status output_check_input(const char *path, const char *input, bp_error *error);

@@ -75,8 +75,8 @@ void error_describe(const bp_error *error, char *text, size_t bytes)
 	char kind[64] = "";
 	if ((error->status == BP_ERROR_CORRUPT || error->status == BP_ERROR_CHECKSUM) && error->offset != BP_NO_OFFSET)
 		snprintf(kind, sizeof kind, "corrupt at offset %" PRIu64, error->offset);
-	else if (error->status == BP_ERROR_CORRUPT || error->status == BP_ERROR_CHECKSUM ||
-	         error->status == BP_ERROR_NOT_OURS || error->status == BP_ERROR_UNSUPPORTED)
+	else if (error->status == BP_ERROR_CORRUPT || error->status == BP_ERROR_CHECKSUM || error->status == BP_ERROR_NOT_OURS ||
+	         error->status == BP_ERROR_UNSUPPORTED)
 		snprintf(kind, sizeof kind, "%s", bp_status_text(error->status));
 	if (strncmp(error->message, kind, strlen(kind)) == 0)
 		kind[0] = '\0'; /* the message says so itself */

@@ -21,8 +21,7 @@ void report_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void report_error(const char *file, const char *material, const bp_error *error);
 
 /* The same with "warning: " before a formatted text. */
-void report_warning(const char *file, const char *material, const char *format, ...)
-	__attribute__((format(printf, 3, 4)));
+void report_warning(const char *file, const char *material, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* The warning that came with a success (BP_OK and a message), if there is one. */
 void report_remark(const char *file, const bp_error *error);

@@ -93,7 +93,10 @@ static bool backslashes_read(const char *text, size_t bytes, struct meaning *to)
 /* XML's references to characters; what is none stays as it is. */
 static void references_read(const char *text, size_t bytes, struct meaning *to)
 {
-	static const struct { const char *name; char means; } NAMED[] = {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
+	static const struct {
+		const char *name;
+		char means;
+	} NAMED[] = {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
 	enum { NAMED_COUNT = sizeof NAMED / sizeof *NAMED };
 	to->bytes = 0;
 	for (size_t at = 0; at < bytes;) {
@@ -138,7 +141,9 @@ static bp_status name_add(struct scene_words *words, const char *text, size_t by
 	const char *slash = memrchr(text, '/', bytes), *last = slash ? slash + 1 : text;
 	const char *back = memrchr(text, '\\', bytes), *windows = back ? back + 1 : text;
 	const size_t left = bytes - (size_t)(last - text), windows_left = bytes - (size_t)(windows - text);
-	return memchr(text, 0, bytes) || (name_fault(last, left) && name_fault(windows, windows_left)) ? BP_OK : word_add(words, text, bytes, spare, error);
+	return memchr(text, 0, bytes) || (name_fault(last, left) && name_fault(windows, windows_left))
+	           ? BP_OK
+	           : word_add(words, text, bytes, spare, error);
 }
 
 /* A URI's %XX; what is none stays as it is. */
@@ -181,7 +186,10 @@ static bp_status word_close(struct scene_words *words, const struct open_word *w
 
 static bp_status quotes_scan(struct scene_words *words, FILE *file, bp_error *error)
 {
-	static const struct { char mark; bool escapes; } KINDS[] = {{'"', false}, {'\'', false}, {'@', false}, {'"', true}, {'\'', true}};
+	static const struct {
+		char mark;
+		bool escapes;
+	} KINDS[] = {{'"', false}, {'\'', false}, {'@', false}, {'"', true}, {'\'', true}};
 	enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 	struct open_word open[KIND_COUNT] = {{.possible = false}};
 	bp_status status = BP_OK;

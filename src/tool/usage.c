@@ -4,9 +4,9 @@
 #include <string.h>
 
 struct block {
-	size_t column;  /* where the next word goes; 0: at the beginning of a line */
-	size_t hang;    /* indent of the lines that follow */
-	bool open;      /* the next line may go on with it */
+	size_t column; /* where the next word goes; 0: at the beginning of a line */
+	size_t hang;   /* indent of the lines that follow */
+	bool open;     /* the next line may go on with it */
 };
 
 static void words_put(FILE *out, struct block *block, const char *text, size_t bytes)

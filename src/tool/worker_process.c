@@ -118,8 +118,8 @@ static _Noreturn void worker_main(const struct worker_setup *setup, int job_fd, 
 		struct stage_clock clock;
 		double start = clock_seconds();
 		stage_clock_start(&clock);
-		bp_status status = setup->work(setup->work_user, &job, in.slot >= 0 ? setup->slot_fd[in.slot] : -1, &record,
-		                               &record_bytes, &error);
+		bp_status status =
+			setup->work(setup->work_user, &job, in.slot >= 0 ? setup->slot_fd[in.slot] : -1, &record, &record_bytes, &error);
 		stage_clock_stop();
 		struct result_frame out = {.magic = RESULT_MAGIC,
 		                           .status = (uint32_t)status,
@@ -210,8 +210,8 @@ void worker_send(struct worker *worker, struct kept_job *kept)
 	size_t name_bytes = strlen(kept->name) + 1;
 
 	memset(&message, 0, sizeof message.frame);
-	message.frame = (struct job_frame){JOB_MAGIC,           kept->job.attempt, kept->job.number,
-	                                   kept->job.slot_bytes, kept->job.slot,    (uint32_t)name_bytes};
+	message.frame = (struct job_frame){JOB_MAGIC,      kept->job.attempt,   kept->job.number, kept->job.slot_bytes,
+	                                   kept->job.slot, (uint32_t)name_bytes};
 	memcpy(message.name, kept->name, name_bytes);
 	worker->current = kept;
 	/* A worker that has died is noticed by its result pipe; one that lives must not wait for what never comes. */
@@ -223,10 +223,11 @@ void worker_send(struct worker *worker, struct kept_job *kept)
 static int result_check(const struct worker *worker, struct result_frame *frame)
 {
 	if (worker->used < sizeof *frame) /* nonsense may be shorter than a frame, and then nothing more comes */
-		return worker->used >= sizeof frame->magic && memcmp(worker->buffer, &(uint32_t){RESULT_MAGIC}, sizeof frame->magic) ? -1 : 0;
+		return worker->used >= sizeof frame->magic && memcmp(worker->buffer, &(uint32_t){RESULT_MAGIC}, sizeof frame->magic) ? -1
+		                                                                                                                     : 0;
 	memcpy(frame, worker->buffer, sizeof *frame);
 	if (!worker->current || frame->magic != RESULT_MAGIC || frame->number != worker->current->job.number ||
-	    frame->message_bytes >= sizeof ((bp_error *)0)->message || frame->record_bytes > WORKER_RECORD_BYTES_MAX)
+	    frame->message_bytes >= sizeof((bp_error *)0)->message || frame->record_bytes > WORKER_RECORD_BYTES_MAX)
 		return -1;
 	size_t whole = sizeof *frame + frame->message_bytes + frame->record_bytes;
 	return worker->used < whole ? 0 : worker->used == whole ? 1 : -1;

@@ -100,11 +100,8 @@ static void news_take(struct workers *pool, struct worker *worker)
 {
 	struct job_result result;
 	switch (worker_receive(worker, &result)) {
-	case WORKER_NOTHING:
-		break;
-	case WORKER_LOST:
-		worker_replace(pool, worker);
-		break;
+	case WORKER_NOTHING: break;
+	case WORKER_LOST: worker_replace(pool, worker); break;
 	case WORKER_RESULT: {
 		struct kept_job *kept = worker->current;
 		worker->current = NULL;
@@ -145,10 +142,7 @@ bp_status workers_start(const struct workers_options *options, struct workers **
 	return BP_OK;
 }
 
-bool workers_idle(const struct workers *pool)
-{
-	return worker_find_idle((struct workers *)pool) || !workers_alive(pool);
-}
+bool workers_idle(const struct workers *pool) { return worker_find_idle((struct workers *)pool) || !workers_alive(pool); }
 
 unsigned workers_busy(const struct workers *pool)
 {
@@ -168,15 +162,9 @@ int workers_slot_take(struct workers *pool)
 	return -1;
 }
 
-int workers_slot_fd(const struct workers *pool, int slot)
-{
-	return pool->slot_fd[slot];
-}
+int workers_slot_fd(const struct workers *pool, int slot) { return pool->slot_fd[slot]; }
 
-void workers_slot_release(struct workers *pool, int slot)
-{
-	pool->slot_taken[slot] = false;
-}
+void workers_slot_release(struct workers *pool, int slot) { pool->slot_taken[slot] = false; }
 
 void workers_submit(struct workers *pool, const struct job *job)
 {

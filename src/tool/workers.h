@@ -30,10 +30,10 @@ typedef bp_status worker_fn(void *user, const struct job *job, int fd, uint8_t *
 
 struct job_result {
 	uint64_t number;
-	double seconds;     /* in the worker */
+	double seconds;                    /* in the worker */
 	double stage_seconds[STAGE_COUNT]; /* of its processor; stage.h */
-	bp_error error;     /* error.status BP_OK: there is a record */
-	const uint8_t *record; /* until the callback returns */
+	bp_error error;                    /* error.status BP_OK: there is a record */
+	const uint8_t *record;             /* until the callback returns */
 	size_t record_bytes;
 };
 typedef void workers_result_fn(void *user, const struct job_result *result);
@@ -53,7 +53,7 @@ struct workers_options {
 /* Starts as many of the workers as the system allows; an error when that is none. */
 bp_status workers_start(const struct workers_options *options, struct workers **out, bp_error *error);
 
-bool workers_idle(const struct workers *workers); /* a job can be submitted */
+bool workers_idle(const struct workers *workers);     /* a job can be submitted */
 unsigned workers_busy(const struct workers *workers); /* jobs without a result so far */
 
 /* An unused slot, or -1. The caller writes the bytes to its descriptor from offset 0. */

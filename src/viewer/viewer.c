@@ -18,20 +18,11 @@ struct viewer_material {
 
 static bp_error last;
 
-const char *viewer_error(void)
-{
-	return last.message[0] ? last.message : bp_status_text(last.status);
-}
+const char *viewer_error(void) { return last.message[0] ? last.message : bp_status_text(last.status); }
 
-uint32_t viewer_error_status(void)
-{
-	return (uint32_t)last.status;
-}
+uint32_t viewer_error_status(void) { return (uint32_t)last.status; }
 
-double viewer_error_offset(void)
-{
-	return last.offset == BP_NO_OFFSET ? -1 : (double)last.offset;
-}
+double viewer_error_offset(void) { return last.offset == BP_NO_OFFSET ? -1 : (double)last.offset; }
 
 static int source_read(void *user, uint64_t offset, void *bytes, size_t count)
 {
@@ -40,25 +31,17 @@ static int source_read(void *user, uint64_t offset, void *bytes, size_t count)
 
 struct bp_archive *viewer_archive_open(uint32_t source, double bytes)
 {
-	const bp_source from = {.struct_bytes = sizeof from, .read = source_read, .user = (void *)(uintptr_t)source, .bytes = (uint64_t)bytes};
+	const bp_source from = {
+		.struct_bytes = sizeof from, .read = source_read, .user = (void *)(uintptr_t)source, .bytes = (uint64_t)bytes};
 	bp_archive *archive;
 	return bp_archive_open_source(&from, &archive, &last) == BP_OK ? archive : NULL;
 }
 
-void viewer_archive_close(struct bp_archive *archive)
-{
-	bp_archive_close(archive);
-}
+void viewer_archive_close(struct bp_archive *archive) { bp_archive_close(archive); }
 
-double viewer_archive_count(const struct bp_archive *archive)
-{
-	return (double)bp_archive_count(archive);
-}
+double viewer_archive_count(const struct bp_archive *archive) { return (double)bp_archive_count(archive); }
 
-double viewer_archive_read_bytes(const struct bp_archive *archive)
-{
-	return (double)bp_archive_bytes_read(archive);
-}
+double viewer_archive_read_bytes(const struct bp_archive *archive) { return (double)bp_archive_bytes_read(archive); }
 
 static int first_only(void *user, const bp_problem *problem)
 {
@@ -101,11 +84,11 @@ const char *viewer_archive_info(const struct bp_archive *archive, double index)
 	struct index_entry entry;
 	if (archive_entry(archive, (uint64_t)index, &leaf, &entry, &last) != BP_OK)
 		return NULL;
-	used += (size_t)snprintf(text + used, sizeof text - used, "\",\"offset\":%llu,\"bytes\":%u,\"layers\":[", (unsigned long long)entry.offset,
-	                         head.record_bytes);
+	used += (size_t)snprintf(text + used, sizeof text - used, "\",\"offset\":%llu,\"bytes\":%u,\"layers\":[",
+	                         (unsigned long long)entry.offset, head.record_bytes);
 	for (uint32_t l = 0; l < head.layer_count; l++)
-		used += (size_t)snprintf(text + used, sizeof text - used, "%s{\"bytes\":%u,\"error\":%.6g}", l ? "," : "", head.layers[l].bytes,
-		                         head.layers[l].fidelity.log_rmse);
+		used += (size_t)snprintf(text + used, sizeof text - used, "%s{\"bytes\":%u,\"error\":%.6g}", l ? "," : "",
+		                         head.layers[l].bytes, head.layers[l].fidelity.log_rmse);
 	snprintf(text + used, sizeof text - used, "]}");
 	return text;
 }
@@ -122,8 +105,8 @@ static struct viewer_material *material_of(struct table *table)
 	}
 	material->table = table;
 	const struct table_layout *l = &material->layout;
-	const float numbers[8] = {(float)l->dims.theta_h, (float)l->dims.theta_d, (float)l->dims.phi_d, (float)(l->row / 32), (float)(l->slice / 32),
-	                          (float)l->width, (float)l->half, l->first};
+	const float numbers[8] = {(float)l->dims.theta_h, (float)l->dims.theta_d, (float)l->dims.phi_d, (float)(l->row / 32),
+	                          (float)(l->slice / 32), (float)l->width,        (float)l->half,       l->first};
 	memcpy(material->numbers, numbers, sizeof numbers);
 	memcpy(material->numbers + 8, l->mix, sizeof l->mix);
 	return material;
@@ -191,20 +174,11 @@ void viewer_material_free(struct viewer_material *material)
 	}
 }
 
-const float *viewer_material_numbers(const struct viewer_material *material)
-{
-	return material->numbers;
-}
+const float *viewer_material_numbers(const struct viewer_material *material) { return material->numbers; }
 
-const uint8_t *viewer_material_blocks(const struct viewer_material *material)
-{
-	return material->layout.blocks;
-}
+const uint8_t *viewer_material_blocks(const struct viewer_material *material) { return material->layout.blocks; }
 
-uint32_t viewer_material_bytes(const struct viewer_material *material)
-{
-	return (uint32_t)material->layout.bytes;
-}
+uint32_t viewer_material_bytes(const struct viewer_material *material) { return (uint32_t)material->layout.bytes; }
 
 void viewer_material_evaluate(const struct viewer_material *material, uint32_t count, const float *pairs, float *rgb)
 {
@@ -248,12 +222,6 @@ uint32_t viewer_lights(uint32_t lighting, float *lights)
 	return (uint32_t)count;
 }
 
-void *viewer_alloc(uint32_t bytes)
-{
-	return malloc(bytes);
-}
+void *viewer_alloc(uint32_t bytes) { return malloc(bytes); }
 
-void viewer_free(void *block)
-{
-	free(block);
-}
+void viewer_free(void *block) { free(block); }

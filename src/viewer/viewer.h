@@ -18,9 +18,9 @@ struct viewer_material;
 /* From the page: `count` bytes at `offset` of its source `source` into *to; 0, or anything else where they are not there. */
 int viewer_read(uint32_t source, double offset, void *to, uint32_t count);
 
-VIEWER_CALL const char *viewer_error(void);        /* the last failure's text */
-VIEWER_CALL uint32_t viewer_error_status(void);    /* its bp_status */
-VIEWER_CALL double viewer_error_offset(void);      /* the byte in the file, or -1 */
+VIEWER_CALL const char *viewer_error(void);     /* the last failure's text */
+VIEWER_CALL uint32_t viewer_error_status(void); /* its bp_status */
+VIEWER_CALL double viewer_error_offset(void);   /* the byte in the file, or -1 */
 
 VIEWER_CALL struct bp_archive *viewer_archive_open(uint32_t source, double bytes);
 VIEWER_CALL void viewer_archive_close(struct bp_archive *archive);
@@ -37,7 +37,8 @@ VIEWER_CALL const char *viewer_archive_info(const struct bp_archive *archive, do
  * Loads the first `layers` layers (0: all) of a material into the compact form; preview: every second value along each axis, where
  * there is such a half. *viewer_measured: the same from the bytes of a MERL file.
  */
-VIEWER_CALL struct viewer_material *viewer_material_load(const struct bp_archive *archive, double index, uint32_t layers, uint32_t preview);
+VIEWER_CALL struct viewer_material *viewer_material_load(const struct bp_archive *archive, double index, uint32_t layers,
+                                                         uint32_t preview);
 VIEWER_CALL struct viewer_material *viewer_measured(const uint8_t *bytes, uint32_t count);
 VIEWER_CALL void viewer_material_free(struct viewer_material *material);
 

@@ -19,13 +19,15 @@ void marginals_write(struct lattice_dims dims, const struct paper_channel *chann
 			write_u16(out, paper_code(channel->marginal[axis][i]));
 }
 
-bp_status marginals_read(struct byte_reader *in, struct lattice_dims dims, double specular, struct paper_channel *channel, bp_error *error)
+bp_status marginals_read(struct byte_reader *in, struct lattice_dims dims, double specular, struct paper_channel *channel,
+                         bp_error *error)
 {
 	channel->scale = read_f64(in);
 	if (!(channel->scale >= 0) || !isfinite(channel->scale))
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the scale is %g", channel->scale);
 	if (!isfinite(specular * channel->scale))
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the scale %g and the specular parameter %g overflow", channel->scale, specular);
+		return error_set(error, BP_ERROR_CORRUPT, 0, "the scale %g and the specular parameter %g overflow", channel->scale,
+		                 specular);
 	for (int axis = 0; axis < 3; axis++) {
 		uint32_t count = marginal_count(dims, axis);
 		channel->marginal[axis] = malloc(count * sizeof(float));
@@ -35,13 +37,13 @@ bp_status marginals_read(struct byte_reader *in, struct lattice_dims dims, doubl
 			channel->marginal[axis][i] = paper_coded(read_u16(in));
 	}
 	if (in->failed || byte_reader_left(in))
-		return error_set(error, BP_ERROR_CORRUPT, 0, "marginals of %ux%ux%u cells take other than these bytes", dims.theta_h, dims.theta_d,
-		                 dims.phi_d);
+		return error_set(error, BP_ERROR_CORRUPT, 0, "marginals of %ux%ux%u cells take other than these bytes", dims.theta_h,
+		                 dims.theta_d, dims.phi_d);
 	return BP_OK;
 }
 
-bp_status fields_write(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *fields, uint32_t count, struct byte_buffer *out,
-                       bp_error *error)
+bp_status fields_write(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *fields, uint32_t count,
+                       struct byte_buffer *out, bp_error *error)
 {
 	struct sparse_coder *coder = NULL;
 	struct range_encoder encoder;
@@ -61,8 +63,8 @@ bp_status fields_write(struct lattice_dims dims, enum paper_field kind, const st
 }
 
 /* Every coefficient takes at least the bit of its sign, so the bytes that are there bound what is allocated. */
-bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum paper_field kind, struct sparse_field *fields, uint32_t count,
-                      bp_error *error)
+bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum paper_field kind, struct sparse_field *fields,
+                      uint32_t count, bp_error *error)
 {
 	struct sparse_coder *coder = NULL;
 	struct range_decoder decoder;
@@ -72,8 +74,8 @@ bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum pap
 		fields[i].step = read_u16(in);
 		there |= fields[i].step != 0;
 		if (in->failed || (fields[i].step && (fields[i].step < PAPER_STEP_LEAST || fields[i].step > PAPER_STEP_MOST)))
-			return error_set(error, BP_ERROR_CORRUPT, in->at, "field %u has the step %u; 0 or %d to %d are possible", i, fields[i].step, PAPER_STEP_LEAST,
-			                 PAPER_STEP_MOST);
+			return error_set(error, BP_ERROR_CORRUPT, in->at, "field %u has the step %u; 0 or %d to %d are possible", i,
+			                 fields[i].step, PAPER_STEP_LEAST, PAPER_STEP_MOST);
 	}
 	if (!there)
 		return error_set(error, BP_ERROR_CORRUPT, in->at, "a section of fields without any");
@@ -86,7 +88,8 @@ bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum pap
 			most -= fields[i].count < most ? fields[i].count : most;
 		}
 	if (!status && !range_decoder_ended(&decoder))
-		status = error_set(error, BP_ERROR_CORRUPT, in->at, "the coefficients take %zu bytes, %zu are there", decoder.at, decoder.count);
+		status = error_set(error, BP_ERROR_CORRUPT, in->at, "the coefficients take %zu bytes, %zu are there", decoder.at,
+		                   decoder.count);
 	sparse_coder_free(coder);
 	return status;
 }
@@ -101,7 +104,8 @@ void fields_free(struct sparse_field *fields, uint32_t count)
 	free(fields);
 }
 
-static bp_status field_coarsen(const struct sparse_field *from, double factor, uint32_t shift, struct sparse_field *to, bp_error *error)
+static bp_status field_coarsen(const struct sparse_field *from, double factor, uint32_t shift, struct sparse_field *to,
+                               bp_error *error)
 {
 	const uint32_t step = from->step + shift;
 

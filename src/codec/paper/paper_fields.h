@@ -7,13 +7,14 @@
 
 void marginals_write(struct lattice_dims dims, const struct paper_channel *channel, struct byte_buffer *out);
 /* specular: its product with the scale must be finite. Here as below the caller frees what the channel holds, also on failure. */
-bp_status marginals_read(struct byte_reader *in, struct lattice_dims dims, double specular, struct paper_channel *channel, bp_error *error);
+bp_status marginals_read(struct byte_reader *in, struct lattice_dims dims, double specular, struct paper_channel *channel,
+                         bp_error *error);
 
-bp_status fields_write(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *fields, uint32_t count, struct byte_buffer *out,
-                       bp_error *error);
+bp_status fields_write(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *fields, uint32_t count,
+                       struct byte_buffer *out, bp_error *error);
 /* Reads `count` zeroed fields. */
-bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum paper_field kind, struct sparse_field *fields, uint32_t count,
-                      bp_error *error);
+bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum paper_field kind, struct sparse_field *fields,
+                      uint32_t count, bp_error *error);
 
 /*
  * A copy with steps 2^(shift/256) times as large (a slice's; a pair's, which serves many slices, less), levels to match; those that

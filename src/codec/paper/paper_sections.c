@@ -12,15 +12,18 @@ enum { CODEC_RAW = 0, CODEC_SPARSE_OLD = 1, CODEC_SPARSE = 2 };
 enum { LEFT_OUT_HD = 1, LEFT_OUT_HPHI = 2, LEFT_OUT_SLICES = 4, LEFT_OUT_ALL = 7 };
 
 #define CHANNEL_KINDS(c) \
-	{ SECTION_MARGINALS + (c) * SECTION_CHANNEL, CODEC_RAW, 2 }, { SECTION_PAIR_HD + (c) * SECTION_CHANNEL, CODEC_SPARSE, 1 }, \
-	{ SECTION_PAIR_HPHI + (c) * SECTION_CHANNEL, CODEC_SPARSE, 1 }, { SECTION_SLICES + (c) * SECTION_CHANNEL, CODEC_SPARSE, 1 }
-static const struct section_kind KINDS[] = { CHANNEL_KINDS(0), CHANNEL_KINDS(1), CHANNEL_KINDS(2) };
+	{SECTION_MARGINALS + (c)*SECTION_CHANNEL, CODEC_RAW, 2}, {SECTION_PAIR_HD + (c)*SECTION_CHANNEL, CODEC_SPARSE, 1}, \
+		{SECTION_PAIR_HPHI + (c)*SECTION_CHANNEL, CODEC_SPARSE, 1}, \
+	{ \
+		SECTION_SLICES + (c)*SECTION_CHANNEL, CODEC_SPARSE, 1 \
+	}
+static const struct section_kind KINDS[] = {CHANNEL_KINDS(0), CHANNEL_KINDS(1), CHANNEL_KINDS(2)};
 /* Codec versions up to 3 had one achromatic density. */
 static const struct section_kind RETIRED[] = {
-	{ SECTION_MARGINALS, CODEC_RAW, 1 },
-	{ SECTION_PAIR_HD, CODEC_SPARSE_OLD, 1 },
-	{ SECTION_PAIR_HPHI, CODEC_SPARSE_OLD, 1 },
-	{ SECTION_SLICES, CODEC_SPARSE_OLD, 1 },
+	{SECTION_MARGINALS, CODEC_RAW, 1},
+	{SECTION_PAIR_HD, CODEC_SPARSE_OLD, 1},
+	{SECTION_PAIR_HPHI, CODEC_SPARSE_OLD, 1},
+	{SECTION_SLICES, CODEC_SPARSE_OLD, 1},
 };
 
 /* The sections of a channel, in the order of their types. */
@@ -29,10 +32,10 @@ static const struct {
 	enum paper_field field;
 	uint32_t left_out;
 } PARTS[] = {
-	{ SECTION_MARGINALS, CODEC_RAW, 2, PAPER_LAYER_MARGINALS, 0, 0 },
-	{ SECTION_PAIR_HD, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, PAPER_HD, LEFT_OUT_HD },
-	{ SECTION_PAIR_HPHI, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, PAPER_HPHI, LEFT_OUT_HPHI },
-	{ SECTION_SLICES, CODEC_SPARSE, 1, PAPER_LAYER_SLICES, PAPER_SLICE, LEFT_OUT_SLICES },
+	{SECTION_MARGINALS, CODEC_RAW, 2, PAPER_LAYER_MARGINALS, 0, 0},
+	{SECTION_PAIR_HD, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, PAPER_HD, LEFT_OUT_HD},
+	{SECTION_PAIR_HPHI, CODEC_SPARSE, 1, PAPER_LAYER_PAIRS, PAPER_HPHI, LEFT_OUT_HPHI},
+	{SECTION_SLICES, CODEC_SPARSE, 1, PAPER_LAYER_SLICES, PAPER_SLICE, LEFT_OUT_SLICES},
 };
 enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
 
@@ -54,13 +57,13 @@ static bool any_there(const struct sparse_field *fields, uint32_t count)
 
 static struct byte_buffer *part_add(struct section_list *sections, int part, int c)
 {
-	return section_add(sections, (enum section_type)(PARTS[part].type + c * SECTION_CHANNEL), PARTS[part].codec, PARTS[part].version,
-	                   PARTS[part].layer, SECTION_REQUIRED | (uint32_t)SECTION_ONLY_R << c, NAN);
+	return section_add(sections, (enum section_type)(PARTS[part].type + c * SECTION_CHANNEL), PARTS[part].codec,
+	                   PARTS[part].version, PARTS[part].layer, SECTION_REQUIRED | (uint32_t)SECTION_ONLY_R << c, NAN);
 }
 
 /* All sections of the model, coarser by `shift` (sparse_coarsen); sections come in the order of their layers. */
-static bp_status model_write(const struct paper_model *paper, uint32_t shift, struct section_list *sections, uint32_t *layer_count,
-                             uint32_t *left_out, bp_error *error)
+static bp_status model_write(const struct paper_model *paper, uint32_t shift, struct section_list *sections,
+                             uint32_t *layer_count, uint32_t *left_out, bp_error *error)
 {
 	bp_status status = BP_OK;
 
@@ -98,7 +101,7 @@ static uint64_t record_bytes(const struct section_list *sections, uint32_t layer
 
 /* What was tried: the coarsest that did not fit, and the finest that did. */
 struct bracket {
-	uint32_t above, below;       /* shifts, in units of SHIFT_GRAIN */
+	uint32_t above, below; /* shifts, in units of SHIFT_GRAIN */
 	uint64_t above_bytes, below_bytes;
 };
 
@@ -116,7 +119,7 @@ static bp_status paper_encode(const struct model *model, const struct encode_req
                               uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
 	const uint64_t budget = request->record_bytes_max;
-	struct bracket bracket = { .above = 0, .below = SHIFT_MOST };
+	struct bracket bracket = {.above = 0, .below = SHIFT_MOST};
 	uint32_t last = 0;
 	(void)decoded;
 
@@ -128,8 +131,9 @@ static bp_status paper_encode(const struct model *model, const struct encode_req
 	status = model_write(model->paper, SHIFT_MOST * SHIFT_GRAIN, sections, layer_count, left_out, error);
 	bracket.below_bytes = record_bytes(sections, *layer_count, request->name_bytes);
 	if (!status && bracket.below_bytes > budget)
-		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the budget of %u bytes is too small: this record takes at least %llu",
-		                 request->record_bytes_max, (unsigned long long)bracket.below_bytes);
+		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+		                 "the budget of %u bytes is too small: this record takes at least %llu", request->record_bytes_max,
+		                 (unsigned long long)bracket.below_bytes);
 	last = SHIFT_MOST;
 	while (!status && bracket.below - bracket.above > 1) {
 		section_list_free(sections);
@@ -200,10 +204,13 @@ static bp_status paper_decode(const struct record_head *head, const struct secti
 }
 
 const struct profile_codec PAPER_CODEC = {
-	.profile = PROFILE_PAPER, .version = 4,
-	.kinds = KINDS, .kind_count = sizeof KINDS / sizeof *KINDS,
-	.retired = RETIRED, .retired_count = sizeof RETIRED / sizeof *RETIRED,
+	.profile = PROFILE_PAPER,
+	.version = 4,
+	.kinds = KINDS,
+	.kind_count = sizeof KINDS / sizeof *KINDS,
+	.retired = RETIRED,
+	.retired_count = sizeof RETIRED / sizeof *RETIRED,
 	.decode = paper_decode,
 };
 
-const struct profile_encoder PAPER_ENCODER = { .profile = PROFILE_PAPER, .encode = paper_encode };
+const struct profile_encoder PAPER_ENCODER = {.profile = PROFILE_PAPER, .encode = paper_encode};

@@ -76,15 +76,17 @@ void sparse_encode(struct range_encoder *encoder, struct sparse_coder *coder, co
 	field_remember(coder, field);
 }
 
-bp_status sparse_decode(struct range_decoder *decoder, struct sparse_coder *coder, size_t most, struct sparse_field *field, bp_error *error)
+bp_status sparse_decode(struct range_decoder *decoder, struct sparse_coder *coder, size_t most, struct sparse_field *field,
+                        bp_error *error)
 {
 	struct sparse_models *models = &coder->models;
 	const uint32_t count = gamma_decode(decoder, &models->count) + 1;
 	uint32_t next = 0, gap = 0;
 
 	if (count > coder->cells || count > most)
-		return error_set(error, BP_ERROR_CORRUPT, decoder->at, "a field of %u coefficients: its plane has %u, and %zu can be in these bytes", count,
-		                 coder->cells, most);
+		return error_set(error, BP_ERROR_CORRUPT, decoder->at,
+		                 "a field of %u coefficients: its plane has %u, and %zu can be in these bytes", count, coder->cells,
+		                 most);
 	field->index = malloc(count * sizeof *field->index);
 	field->level = malloc(count * sizeof *field->level);
 	if (!field->index || !field->level)
@@ -92,12 +94,13 @@ bp_status sparse_decode(struct range_decoder *decoder, struct sparse_coder *code
 	for (uint32_t i = 0; i < count; i++) {
 		gap = gamma_decode(decoder, &models->gap[context_of(gap)]);
 		if (gap >= coder->cells - next)
-			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u lies outside its plane of %u", i, coder->cells);
+			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u lies outside its plane of %u", i,
+			                 coder->cells);
 		const uint32_t at = next + gap, magnitude = gamma_decode(decoder, &models->magnitude[coder->band[at]][coder->before[at]]);
 		const uint32_t negative = range_decode_even(decoder, 1);
 		if (magnitude >= PAPER_LEVEL_MAX)
-			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u has a level of %u, at most %d are possible", i, magnitude + 1,
-			                 PAPER_LEVEL_MAX);
+			return error_set(error, BP_ERROR_CORRUPT, decoder->at, "coefficient %u has a level of %u, at most %d are possible", i,
+			                 magnitude + 1, PAPER_LEVEL_MAX);
 		field->index[i] = at;
 		field->level[i] = negative ? -(int32_t)magnitude - 1 : (int32_t)magnitude + 1;
 		next = at + 1;

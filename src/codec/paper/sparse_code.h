@@ -34,6 +34,7 @@ void sparse_encode(struct range_encoder *encoder, struct sparse_coder *coder, co
  * Fills count, index and level, which the caller frees also on failure. BP_ERROR_CORRUPT when there are more coefficients than
  * cells or than `most`, an index reaches the plane's end, or a level is beyond PAPER_LEVEL_MAX.
  */
-bp_status sparse_decode(struct range_decoder *decoder, struct sparse_coder *coder, size_t most, struct sparse_field *field, bp_error *error);
+bp_status sparse_decode(struct range_decoder *decoder, struct sparse_coder *coder, size_t most, struct sparse_field *field,
+                        bp_error *error);
 
 #endif

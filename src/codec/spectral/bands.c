@@ -1,6 +1,7 @@
 #include "bands.h"
 
-static void band_add(struct bands *bands, uint32_t orientation, uint32_t row, uint32_t column, uint32_t rows, uint32_t columns, int coarsest)
+static void band_add(struct bands *bands, uint32_t orientation, uint32_t row, uint32_t column, uint32_t rows, uint32_t columns,
+                     int coarsest)
 {
 	struct band *b = &bands->band[bands->count];
 	*b = (struct band){.row = row, .column = column, .rows = rows, .columns = columns, .orientation = orientation};

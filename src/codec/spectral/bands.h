@@ -14,8 +14,8 @@ enum { BANDS_MAX = 3 * SPECTRUM_LEVELS_MAX + 1, BLOCK_EDGE = 8 };
 struct band {
 	uint32_t row, column, rows, columns; /* in the plane of coefficients */
 	uint32_t orientation;                /* bit 0: detail along theta_d, bit 1: along theta_h */
-	int32_t parent;                      /* the band of the same orientation one level coarser, band 0 at the coarsest level, -1 for band 0 */
-	uint32_t parent_shift;               /* 1: a parent's cell stands for 2 x 2; 0 at the coarsest level */
+	int32_t parent;        /* the band of the same orientation one level coarser, band 0 at the coarsest level, -1 for band 0 */
+	uint32_t parent_shift; /* 1: a parent's cell stands for 2 x 2; 0 at the coarsest level */
 	uint32_t block_rows, block_columns, block_at, block_stride;
 };
 

@@ -7,7 +7,7 @@
 #include "model/math/fast_math.h"
 #include "rate.h"
 
-enum { FORESEEABLE = 2000 }; /* bytes of the higher planes below which too little is known to foresee the rest */
+enum { FORESEEABLE = 2000 };             /* bytes of the higher planes below which too little is known to foresee the rest */
 static const float ROUNDING = 0.4f;      /* a level is rounded down up to 0.6: what is rare costs more than it is worth */
 static const double RATE_ROUNDING = 0.3; /* what spectral_rate was measured with; thinned levels are about as many */
 
@@ -20,8 +20,9 @@ struct search {
 static struct search search_for(int effort)
 {
 	static const struct search searches[9] = {
-		{0.991, 1.25, 1.10, 2}, {0.991, 1.15, 1.06, 3}, {0.991, 1.10, 1.04, 3}, {0.991, 1.06, 1.02, 4}, {0.991, 1.03, 1.01, 5},
-		{0.991, 1.02, 1.007, 5}, {0.994, 1.016, 1.006, 6}, {0.996, 1.012, 1.004, 8}, {0.998, 1.008, 1.003, 10},
+		{0.991, 1.25, 1.10, 2},   {0.991, 1.15, 1.06, 3},   {0.991, 1.10, 1.04, 3},
+		{0.991, 1.06, 1.02, 4},   {0.991, 1.03, 1.01, 5},   {0.991, 1.02, 1.007, 5},
+		{0.994, 1.016, 1.006, 6}, {0.996, 1.012, 1.004, 8}, {0.998, 1.008, 1.003, 10},
 	};
 	return searches[effort < 1 ? 0 : effort > 9 ? 8 : effort - 1];
 }
@@ -30,14 +31,14 @@ static struct search search_for(int effort)
 struct attempt {
 	const struct search *search; /* NULL: code all units, whatever they take */
 	const struct rate *rate;
-	double bias;           /* what was wanted for each byte foreseen in the last attempt that was complete */
-	double room;           /* bytes */
-	uint32_t units;        /* to be coded at most */
+	double bias;               /* what was wanted for each byte foreseen in the last attempt that was complete */
+	double room;               /* bytes */
+	uint32_t units;            /* to be coded at most */
 	double taken[RATE_PLANES]; /* at the ends of planes */
-	double foreseen;       /* what all units will take, foreseen before the lowest plane; 0 where it was not */
-	double wanted;         /* what they took, or will where the attempt is not complete */
+	double foreseen;           /* what all units will take, foreseen before the lowest plane; 0 where it was not */
+	double wanted;             /* what they took, or will where the attempt is not complete */
 	bool complete;
-	bp_status status;      /* what the watch said */
+	bp_status status; /* what the watch said */
 };
 
 void encoding_clear(struct encoding *e)
@@ -57,8 +58,8 @@ static bool worth_going_on(const struct encoding *e, struct attempt *a)
 }
 
 /* Units from *unit on until layer l is full; `bytes` of the record come before it. False: the attempt was given up, or the watch ended it. */
-static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, struct mixed_coder *coder, uint64_t bytes, uint32_t *unit,
-                         uint64_t *largest_unit, bp_error *error)
+static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, struct mixed_coder *coder, uint64_t bytes,
+                         uint32_t *unit, uint64_t *largest_unit, bp_error *error)
 {
 	struct range_encoder *encoder = coder->encoder, kept;
 	struct byte_buffer *out = &e->stream[l];
@@ -71,7 +72,8 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 	size_t kept_count = out->count;
 	uint64_t now = bytes + range_encoder_bytes(encoder, 0);
 	e->end[l] = *unit;
-	while (*unit < units && !out->failed && (last ? now <= 3 * (uint64_t)e->limit[l] : now + 2 * *largest_unit + 16 <= e->limit[l])) {
+	while (*unit < units && !out->failed &&
+	       (last ? now <= 3 * (uint64_t)e->limit[l] : now + 2 * *largest_unit + 16 <= e->limit[l])) {
 		const uint64_t before = now;
 		const uint32_t plane = planes_unit_plane(e->planes, *unit);
 		a->status = watch_tell(e->watch, 0.6 + 0.2 * *unit / units, error);
@@ -103,7 +105,7 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 static bp_status levels_encode(struct encoding *e, struct attempt *a, bp_error *error)
 {
 	struct range_encoder encoder;
-	struct mixed_coder coder = { .encoder = &encoder, .tables = mixer_tables_get() };
+	struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
 	uint64_t largest_unit = 0;
 	uint32_t unit = 0;
 
@@ -138,9 +140,9 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	struct rate rate;
 	const bool noisy = e->model->noisy;
 	const double room = (double)limit - (double)e->head_bytes;
-	struct attempt a = { .rate = &rate, .room = room, .bias = noisy ? 0.97 : 1 /* noise leaves more levels that stand alone */ };
+	struct attempt a = {.rate = &rate, .room = room, .bias = noisy ? 0.97 : 1 /* noise leaves more levels that stand alone */};
 	double bits = search.aim * room * 8 / (noisy ? 1.18 : 0.99); /* by rate_bits; the coder takes so many for each */
-	float fitting = 0; /* the step that filled the record best */
+	float fitting = 0;                                           /* the step that filled the record best */
 	uint64_t most = 0;
 
 	rate_measure(e->model, e->planes->dims, &rate);

@@ -12,16 +12,16 @@
 struct encoding {
 	/* Set before encoding_make: */
 	const struct spectral_model *model;
-	struct planes *planes;       /* for encoding, of the model's extents */
-	uint64_t head_bytes;         /* of the record, without any bit planes */
+	struct planes *planes; /* for encoding, of the model's extents */
+	uint64_t head_bytes;   /* of the record, without any bit planes */
 	uint32_t layers;
-	uint32_t limit[LAYERS_MAX];  /* record bytes at the end of every layer; the last is the budget */
-	const struct watch *watch;   /* told after every unit */
+	uint32_t limit[LAYERS_MAX]; /* record bytes at the end of every layer; the last is the budget */
+	const struct watch *watch;  /* told after every unit */
 	/* What it leaves: */
 	float step, centre[2];
 	struct byte_buffer stream[LAYERS_MAX]; /* the contents of the sections */
-	uint32_t end[LAYERS_MAX];    /* the unit before which a layer ends */
-	uint64_t bytes;              /* of the record */
+	uint32_t end[LAYERS_MAX];              /* the unit before which a layer ends */
+	uint64_t bytes;                        /* of the record */
 };
 
 /* effort: 1..9. Free it by encoding_clear in any case. */

@@ -39,8 +39,8 @@ struct planes {
 	struct bands bands;
 	uint32_t planes;
 	/* Per field, [harmonic][block], with two harmonics of zeros before and behind. */
-	uint32_t *slot[3];   /* the block's place in the pool; 0, a block of zeros, where all its levels are 0 so far */
-	uint8_t *active[3];  /* 1 where there is a slot */
+	uint32_t *slot[3];         /* the block's place in the pool; 0, a block of zeros, where all its levels are 0 so far */
+	uint8_t *active[3];        /* 1 where there is a slot */
 	uint32_t *bands_active[3]; /* [harmonic]: bit b is 1 where band b holds a block that is active */
 	struct plane_block *pool;
 	uint32_t pool_count, pool_room;
@@ -69,10 +69,7 @@ void planes_quantise(struct planes *planes, float *const coefficient[3], float s
  */
 uint32_t planes_settle(struct planes *planes, float rounding, float centre[2]);
 
-static inline uint32_t planes_units(const struct planes *planes)
-{
-	return planes->planes * 3 * planes->dims.phi_d;
-}
+static inline uint32_t planes_units(const struct planes *planes) { return planes->planes * 3 * planes->dims.phi_d; }
 static inline uint32_t planes_unit_plane(const struct planes *planes, uint32_t unit)
 {
 	return planes->planes - 1 - unit / (3 * planes->dims.phi_d);
@@ -85,6 +82,7 @@ bp_status planes_decode_unit(struct planes *planes, struct mixed_coder *coder, u
 bp_status planes_pool_grow(struct planes *planes, bp_error *error);
 
 /* The levels as units 0..end-1 tell them: malloc'ed, ordered by field, harmonic, band, block and place. */
-bp_status planes_collect(const struct planes *planes, uint32_t end, struct spectral_level **out, uint32_t *count, bp_error *error);
+bp_status planes_collect(const struct planes *planes, uint32_t end, struct spectral_level **out, uint32_t *count,
+                         bp_error *error);
 
 #endif

@@ -17,9 +17,11 @@ static inline int any_above(const float *x, uint32_t least_bits)
 }
 
 /* The block of a coefficient of `band` that has a level; it gets a place in the pool where it has none. */
-static struct level_block *level_block_at(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x)
+static struct level_block *level_block_at(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band,
+                                          uint32_t y, uint32_t x)
 {
-	const size_t at = (size_t)(harmonic + 2) * p->bands.blocks + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
+	const size_t at = (size_t)(harmonic + 2) * p->bands.blocks + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride +
+	                  x / BLOCK_EDGE;
 	uint32_t *slot = &p->level_slot[field][at];
 
 	if (!*slot) {
@@ -29,14 +31,11 @@ static struct level_block *level_block_at(struct planes *p, uint32_t field, uint
 	return &p->levels[*slot];
 }
 
-static uint32_t place_in_block(uint32_t y, uint32_t x)
-{
-	return y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
-}
+static uint32_t place_in_block(uint32_t y, uint32_t x) { return y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE; }
 
 /* The coefficient's level, where it is not 0, in its block. */
-static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x, float coefficient,
-                        float inverse, float rounding)
+static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x,
+                        float coefficient, float inverse, float rounding)
 {
 	const uint32_t place = place_in_block(y, x), most = (1u << SPECTRAL_PLANES_MAX) - 1;
 	const float size = fabsf(coefficient) * inverse;
@@ -107,7 +106,8 @@ static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t ha
 					if (!size)
 						continue;
 					if (n < room)
-						out[n] = (struct spectral_level){.at = (uint32_t)(field0 + (row + x) * p->dims.phi_d), .level = block->sign[k] == 2 ? -size : size};
+						out[n] = (struct spectral_level){.at = (uint32_t)(field0 + (row + x) * p->dims.phi_d),
+						                                 .level = block->sign[k] == 2 ? -size : size};
 					n++;
 				}
 			}

@@ -13,10 +13,7 @@
 #define INLINE inline __attribute__((always_inline))
 
 /* 0: zero, 1: less than one and a half times the plane's value, 2: more. */
-static INLINE uint32_t tier(uint32_t near)
-{
-	return (uint32_t)(near != 0) + (uint32_t)(near >= 6);
-}
+static INLINE uint32_t tier(uint32_t near) { return (uint32_t)(near != 0) + (uint32_t)(near >= 6); }
 
 /*
  * One row of a block in units of the plane's value. Comparisons are of signed numbers, which every processor has; no single value needs
@@ -33,7 +30,7 @@ static INLINE cells8 cells_load(const uint16_t *from)
 }
 
 /* 1 where v >= least, else 0: subtracted, as what is true is -1. */
-#define CELLS_FROM(v, least) (-(cells8)((signed8)(v) > (int16_t)((least) - 1)))
+#define CELLS_FROM(v, least) (-(cells8)((signed8)(v) > (int16_t)((least)-1)))
 
 /*
  * The block at hand with a ring of its neighbours' cells, cell (y, x) at [y + 1][x + 1], and the blocks at the same place in
@@ -45,9 +42,9 @@ struct block_view {
 	uint16_t near[BLOCK_EDGE + 2][VIEW_STRIDE];
 	uint8_t sign[BLOCK_EDGE + 2][VIEW_STRIDE];
 	const struct plane_block *before2, *before, *after, *after2, *other[2], *first;
-	const uint16_t *parent; /* of cell (0, 0) */
-	uint32_t *known;        /* the block's own */
-	const int32_t *level;   /* encoder only */
+	const uint16_t *parent;   /* of cell (0, 0) */
+	uint32_t *known;          /* the block's own */
+	const int32_t *level;     /* encoder only */
 	uint32_t other_behind[2]; /* of other[]: 1 where that field's plane is still to be coded, else 0 */
 	uint32_t parent_shift, orientation, band;
 };
@@ -90,8 +87,9 @@ static INLINE int row_look(const struct block_view *v, uint32_t y, uint32_t widt
 	if (!(word[0] | word[1]))
 		return 0;
 	const cells8 size_quarter = CELLS_FROM(parent, 4) + CELLS_FROM(parent, 26) + CELLS_FROM(parent, 162);
-	const cells8 size_half = ((CELLS_FROM(others, 2) + CELLS_FROM(others, 4)) + (CELLS_FROM(others, 11) + CELLS_FROM(others, 26))) +
-	                         ((CELLS_FROM(others, 64) + CELLS_FROM(others, 162)) + CELLS_FROM(others, 407));
+	const cells8 size_half =
+		((CELLS_FROM(others, 2) + CELLS_FROM(others, 4)) + (CELLS_FROM(others, 11) + CELLS_FROM(others, 26))) +
+		((CELLS_FROM(others, 64) + CELLS_FROM(others, 162)) + CELLS_FROM(others, 407));
 	const cells8 beyond = (size_quarter * (SIZES / 2) + size_half) * (SIZES * SIZES * 2) + (uint16_t)chroma;
 #define TIER(v) (CELLS_FROM(v, 1) + CELLS_FROM(v, 6))
 	const cells8 ring = ((TIER(before2) * 3 + TIER(after2)) * 3 + TIER(before)) * 3 + TIER(after);

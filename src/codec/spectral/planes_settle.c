@@ -20,7 +20,8 @@ struct surroundings {
 static uint32_t around(const struct surroundings *s, int k)
 {
 	const int y = k / BLOCK_EDGE, x = k % BLOCK_EDGE;
-	int sum = 2 * (abs(s->before2[k]) + abs(s->after2[k])) + abs(s->before[k]) + abs(s->after[k]) + abs(s->other[0][k]) + abs(s->other[1][k]);
+	int sum = 2 * (abs(s->before2[k]) + abs(s->after2[k])) + abs(s->before[k]) + abs(s->after[k]) + abs(s->other[0][k]) +
+	          abs(s->other[1][k]);
 
 	for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < BLOCK_EDGE; v++)
 		for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < BLOCK_EDGE; u++)
@@ -35,8 +36,8 @@ struct tally {
 };
 
 /* Settles one block; returns the planes that it needs. */
-static uint8_t block_settle(struct level_block *block, const struct surroundings *s, const int limit[AROUND_MAX + 1], double rounding,
-                            struct tally *tally)
+static uint8_t block_settle(struct level_block *block, const struct surroundings *s, const int limit[AROUND_MAX + 1],
+                            double rounding, struct tally *tally)
 {
 	uint32_t sizes = 0;
 	for (int k = 0; k < BLOCK_CELLS; k++) {
@@ -79,8 +80,11 @@ uint32_t planes_settle(struct planes *p, float rounding, float centre[2])
 						if (!*slot)
 							continue;
 						const struct surroundings s = {
-							p->levels[*slot].level, p->levels[slot[-2 * next]].level, p->levels[slot[-next]].level,
-							p->levels[slot[next]].level, p->levels[slot[2 * next]].level,
+							p->levels[*slot].level,
+							p->levels[slot[-2 * next]].level,
+							p->levels[slot[-next]].level,
+							p->levels[slot[next]].level,
+							p->levels[slot[2 * next]].level,
 							{p->levels[p->level_slot[f == 0][at]].level, p->levels[p->level_slot[f == 2 ? 1 : 2][at]].level},
 						};
 						p->top[f][at] = block_settle(&p->levels[*slot], &s, limit, (double)rounding, &tally);

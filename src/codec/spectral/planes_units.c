@@ -26,13 +26,13 @@ struct place {
 	struct mixed_coder *coder;
 	uint32_t plane, field, harmonic, chroma;
 	uint32_t depth, harmonic_class;
-	size_t blocks;                 /* of a plane, padding included: from harmonic to harmonic */
-	uint32_t *slot;                /* of this field and harmonic */
+	size_t blocks;  /* of a plane, padding included: from harmonic to harmonic */
+	uint32_t *slot; /* of this field and harmonic */
 	uint8_t *active;
 	const uint32_t *other_slot[2]; /* the other fields' */
 	const uint32_t *first_slot;
 	const uint8_t *first_active, *second_active; /* of fields 0 and 1, for fields after them */
-	uint32_t *bands;                             /* bands_active of this field and harmonic, and those of the two fields likewise */
+	uint32_t *bands; /* bands_active of this field and harmonic, and those of the two fields likewise */
 	uint32_t first_bands, second_bands;
 };
 
@@ -47,7 +47,8 @@ static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_
 		return mixed_bit_alone(u->coder, decode, &c->quiet.band[u->harmonic_class * 2 + u->chroma], bit);
 	const uint32_t near = (bands[-1] >> b & 1) + (bands[1] >> b & 1), alike = (bands[-2] >> b & 1) + (bands[2] >> b & 1);
 	const uint32_t others = (u->first_bands >> b & 1) + (u->second_bands >> b & 1);
-	return mixed_bit_pair(u->coder, decode, &c->mixed.band[0][(((near * 3 + alike) * 2 + (parent | (above < 0))) * 3 + others) * 2 + u->chroma],
+	return mixed_bit_pair(u->coder, decode,
+	                      &c->mixed.band[0][(((near * 3 + alike) * 2 + (parent | (above < 0))) * 3 + others) * 2 + u->chroma],
 	                      &c->mixed.band[1][(near + alike) * BANDS_MAX + b], bit);
 }
 
@@ -73,7 +74,8 @@ static INLINE uint32_t code_quiet_bands(const struct place *u, int decode, const
 }
 
 /* `above`: the active blocks of the row of parents; NULL in band 0. */
-static INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32_t b, uint32_t x, size_t at, const uint8_t *above, uint32_t bit)
+static INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32_t b, uint32_t x, size_t at, const uint8_t *above,
+                                       uint32_t bit)
 {
 	struct plane_contexts *c = u->contexts;
 	const struct band *band = &u->planes->bands.band[b];
@@ -105,7 +107,8 @@ static INLINE const uint8_t *parents_active(const struct place *u, const struct 
 	return u->active + above->block_at + (size_t)(py < last ? py : last) * above->block_stride;
 }
 
-static INLINE void block_gather(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at, struct block_view *v)
+static INLINE void block_gather(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at,
+                                struct block_view *v)
 {
 	const struct planes *p = u->planes;
 	const struct band *band = &p->bands.band[b];
@@ -152,7 +155,8 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 		/* The parents of a block's cells lie in one block: in all of it, or in a quarter. */
 		const struct band *above = &p->bands.band[band->parent];
 		const uint32_t s = band->parent_shift, edge = s ? BLOCK_EDGE / 2 : 0;
-		v->parent = pool[u->slot[above->block_at + (by >> s) * above->block_stride + (bx >> s)]].near + (by & 1) * edge * BLOCK_EDGE + (bx & 1) * edge;
+		v->parent = pool[u->slot[above->block_at + (by >> s) * above->block_stride + (bx >> s)]].near +
+		            (by & 1) * edge * BLOCK_EDGE + (bx & 1) * edge;
 	}
 	v->level = decode ? NULL : p->levels[p->level_slot[u->field][(size_t)(u->harmonic + 2) * p->bands.blocks + at]].level;
 }
@@ -165,7 +169,8 @@ static INLINE void block_scatter(const struct block_view *v, struct plane_block 
 	}
 }
 
-static INLINE uint32_t code_sign(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t x, uint32_t bit)
+static INLINE uint32_t code_sign(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t x,
+                                 uint32_t bit)
 {
 	struct plane_contexts *c = u->contexts;
 	const uint8_t *s = &v->sign[y + 1][x + 1];
@@ -200,8 +205,8 @@ static INLINE void cell_begin(const struct place *u, int decode, struct block_vi
 }
 
 /* One level's bit of this plane; `around` as it is now. */
-static INLINE void code_cell(const struct place *u, int decode, struct block_view *v, const struct row_view *row, uint32_t y, uint32_t x,
-                             uint32_t around, uint32_t fresh)
+static INLINE void code_cell(const struct place *u, int decode, struct block_view *v, const struct row_view *row, uint32_t y,
+                             uint32_t x, uint32_t around, uint32_t fresh)
 {
 	struct plane_contexts *c = u->contexts;
 	const uint32_t plane = u->plane, b = v->band, along = row->along[x];
@@ -210,8 +215,9 @@ static INLINE void code_cell(const struct place *u, int decode, struct block_vie
 
 	if (*near) {
 		const uint32_t half = plane ? 2 : 0, most = (uint32_t)*near >> 3, tall = most < 4 ? most : most < 8 ? 4 : 5;
-		const uint32_t bit = mixed_bit_pair(u->coder, decode, &c->mixed.refine[0][(tall * SIZES + size_of(c, along)) * 2 + u->chroma],
-		                                    &c->mixed.refine[1][(tall * BANDS_MAX + b) * SIZES + size_of(c, (around + along) >> 1)], target & 1);
+		const uint32_t bit =
+			mixed_bit_pair(u->coder, decode, &c->mixed.refine[0][(tall * SIZES + size_of(c, along)) * 2 + u->chroma],
+		                   &c->mixed.refine[1][(tall * BANDS_MAX + b) * SIZES + size_of(c, (around + along) >> 1)], target & 1);
 		uint32_t *known = &v->known[y * BLOCK_EDGE + x];
 		const uint32_t now = (*known >> (plane + 3) << 1 | bit) * 4 + half; /* the planes above this one, and this one's bit */
 		*known = now << plane;
@@ -222,7 +228,8 @@ static INLINE void code_cell(const struct place *u, int decode, struct block_vie
 	if (!(around | row->rest[x]))
 		bit = mixed_bit_alone(u->coder, decode, &c->quiet.cell[quiet_index(u, b, fresh)], target);
 	else
-		bit = mixed_bit_pair(u->coder, decode, &c->mixed.zero[0][row->beyond[x] + (size_of(c, around) * SIZES + size_of(c, along)) * 2],
+		bit = mixed_bit_pair(u->coder, decode,
+		                     &c->mixed.zero[0][row->beyond[x] + (size_of(c, around) * SIZES + size_of(c, along)) * 2],
 		                     &c->mixed.zero[1][row->tiers[x] + tier(near[-1]) * 27], target);
 	if (bit)
 		cell_begin(u, decode, v, y, x);
@@ -232,7 +239,8 @@ static INLINE void code_cell(const struct place *u, int decode, struct block_vie
  * A row with nothing around it: one bit tells whether all of it stays 0, else where the first one is that does not. Returns
  * that one's place, or the width.
  */
-static INLINE uint32_t code_quiet_row(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t width, uint32_t fresh)
+static INLINE uint32_t code_quiet_row(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t width,
+                                      uint32_t fresh)
 {
 	struct plane_contexts *c = u->contexts;
 	uint32_t place = 0;
@@ -289,12 +297,26 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 	const uint32_t plane = p->planes - 1 - unit / (3 * harmonics);
 	const size_t block0 = (size_t)(harmonic + 2) * p->bands.blocks;
 	const struct place u = {
-		.planes = p, .contexts = p->contexts, .coder = coder, .plane = plane, .field = field, .harmonic = harmonic,
-		.chroma = field > 0, .depth = plane == 0 ? 0 : plane < 3 ? 1 : 2, .harmonic_class = harmonic_class(harmonic),
-		.blocks = p->bands.blocks, .slot = p->slot[field] + block0, .active = p->active[field] + block0,
+		.planes = p,
+		.contexts = p->contexts,
+		.coder = coder,
+		.plane = plane,
+		.field = field,
+		.harmonic = harmonic,
+		.chroma = field > 0,
+		.depth = plane == 0  ? 0
+	             : plane < 3 ? 1
+	                         : 2,
+		.harmonic_class = harmonic_class(harmonic),
+		.blocks = p->bands.blocks,
+		.slot = p->slot[field] + block0,
+		.active = p->active[field] + block0,
 		.other_slot = {p->slot[field == 0] + block0, p->slot[field == 2 ? 1 : 2] + block0},
-		.first_slot = p->slot[0] + block0, .first_active = p->active[0] + block0, .second_active = p->active[1] + block0,
-		.bands = p->bands_active[field] + harmonic + 2, .first_bands = field > 0 ? p->bands_active[0][harmonic + 2] : 0,
+		.first_slot = p->slot[0] + block0,
+		.first_active = p->active[0] + block0,
+		.second_active = p->active[1] + block0,
+		.bands = p->bands_active[field] + harmonic + 2,
+		.first_bands = field > 0 ? p->bands_active[0][harmonic + 2] : 0,
 		.second_bands = field > 1 ? p->bands_active[1][harmonic + 2] : 0,
 	};
 	const uint8_t *top = decode ? NULL : p->top[field] + block0;
@@ -331,10 +353,7 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 	}
 }
 
-void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit)
-{
-	unit_code(planes, coder, unit, 0);
-}
+void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit) { unit_code(planes, coder, unit, 0); }
 
 bp_status planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit, bp_error *error)
 {

@@ -6,10 +6,7 @@
 
 enum { BIN_SHIFT = 23 - 4 }; /* of a float's bits: RATE_PER_OCTAVE = 2^4 */
 
-static inline uint32_t size_bits(float coefficient)
-{
-	return bits_of_float(coefficient) & 0x7fffffff;
-}
+static inline uint32_t size_bits(float coefficient) { return bits_of_float(coefficient) & 0x7fffffff; }
 
 void rate_measure(const struct spectral_model *model, struct lattice_dims d, struct rate *out)
 {

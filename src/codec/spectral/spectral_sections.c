@@ -10,15 +10,21 @@
 #include "encoding.h"
 #include "codec/profile_codec.h"
 
-enum { CODEC_FIELDS = 0, CODEC_PLANES = 1, FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 + SPECTRAL_WEIGHTS, FIELDS_VERSION = 3, PLANES_VERSION = 2 };
+enum {
+	CODEC_FIELDS = 0,
+	CODEC_PLANES = 1,
+	FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 + SPECTRAL_WEIGHTS,
+	FIELDS_VERSION = 3,
+	PLANES_VERSION = 2
+};
 
 static const struct section_kind KINDS[] = {
-	{ SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION },
-	{ SECTION_PLANES, CODEC_PLANES, PLANES_VERSION },
+	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION},
+	{SECTION_PLANES, CODEC_PLANES, PLANES_VERSION},
 };
 
 /* Records up to these many bytes are previews of larger ones. */
-static const uint32_t PREVIEWS[] = { 4096, 16384, 65536, 262144, 1048576 };
+static const uint32_t PREVIEWS[] = {4096, 16384, 65536, 262144, 1048576};
 enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
 /* ---- encoding ---- */
@@ -70,23 +76,25 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 }
 
 static bp_status spectral_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
-                                uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
+                                 uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
-	struct encoding e = { .model = model->spectral, .watch = request->options->watch };
+	struct encoding e = {.model = model->spectral, .watch = request->options->watch};
 	const uint32_t budget = request->record_bytes_max;
 	uint64_t least;
 	bp_status status;
 
 	if (!e.model->coefficient[0])
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a decoded model cannot be encoded again: its coefficients are gone");
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
+		                 "a decoded model cannot be encoded again: its coefficients are gone");
 	for (int i = 0; i < PREVIEW_COUNT && PREVIEWS[i] + PREVIEWS[i] / 4 < budget; i++)
 		e.limit[e.layers++] = PREVIEWS[i];
 	e.limit[e.layers++] = budget;
 	e.head_bytes = record_head_size(request->name_bytes, e.layers, e.layers + 1) + FIELDS_BYTES;
 	least = e.head_bytes + e.layers * 8;
 	if (least > budget)
-		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the budget of %u bytes is too small: this record takes at least %llu",
-		                 budget, (unsigned long long)least);
+		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+		                 "the budget of %u bytes is too small: this record takes at least %llu", budget,
+		                 (unsigned long long)least);
 	status = planes_create(model->dims, 1, &e.planes, error);
 	if (status)
 		return status;
@@ -97,7 +105,8 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 			e.layers--;
 		fields_write(&e, sections);
 		for (uint32_t l = 0; l < e.layers; l++) {
-			struct byte_buffer *out = section_add(sections, SECTION_PLANES, CODEC_PLANES, PLANES_VERSION, l, SECTION_REQUIRED, NAN);
+			struct byte_buffer *out =
+				section_add(sections, SECTION_PLANES, CODEC_PLANES, PLANES_VERSION, l, SECTION_REQUIRED, NAN);
 			write_bytes(out, e.stream[l].bytes, e.stream[l].count);
 		}
 		*layer_count = e.layers;
@@ -115,7 +124,8 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 {
 	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
 	if (section->entry->bytes != FIELDS_BYTES)
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %d", section->entry->bytes, FIELDS_BYTES);
+		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %d", section->entry->bytes,
+		                 FIELDS_BYTES);
 	model->unit = read_f64(&in);
 	for (int c = 0; c < 3; c++)
 		model->base[c] = read_f32(&in);
@@ -128,7 +138,8 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 	model->planes = read_u32(&in);
 	read_bytes(&in, model->weights, SPECTRAL_WEIGHTS);
 	if (!(model->unit >= SPECTRAL_UNIT_LEAST && model->unit <= SPECTRAL_UNIT_MOST))
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the unit is %g, not from %g to %g", model->unit, SPECTRAL_UNIT_LEAST, SPECTRAL_UNIT_MOST);
+		return error_set(error, BP_ERROR_CORRUPT, 0, "the unit is %g, not from %g to %g", model->unit, SPECTRAL_UNIT_LEAST,
+		                 SPECTRAL_UNIT_MOST);
 	for (int c = 0; c < 3; c++)
 		if (!(fabsf(model->base[c]) <= 64))
 			return error_set(error, BP_ERROR_CORRUPT, 8, "a base is %g", (double)model->base[c]);
@@ -146,9 +157,10 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 	return BP_OK;
 }
 
-static bp_status planes_read(const struct section_bytes *section, struct planes *planes, uint32_t from, uint32_t *end, bp_error *error)
+static bp_status planes_read(const struct section_bytes *section, struct planes *planes, uint32_t from, uint32_t *end,
+                             bp_error *error)
 {
-	struct mixed_coder coder = { .tables = mixer_tables_get() };
+	struct mixed_coder coder = {.tables = mixer_tables_get()};
 	const uint32_t units = planes_units(planes);
 	if (section->entry->bytes < 4)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "a section of planes has %u bytes", section->entry->bytes);
@@ -167,7 +179,7 @@ static bp_status planes_read(const struct section_bytes *section, struct planes 
 }
 
 static bp_status spectral_decode(const struct record_head *head, const struct section_bytes *sections, uint32_t count,
-                                struct model *model, uint32_t *failed, bp_error *error)
+                                 struct model *model, uint32_t *failed, bp_error *error)
 {
 	struct spectral_model *decoded = model->spectral = calloc(1, sizeof *decoded);
 	struct planes *planes = NULL;
@@ -177,8 +189,8 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 	if (!decoded)
 		return error_memory(error, sizeof *decoded);
 	if (count != model->layer_count + 1 || sections[0].entry->type != SECTION_FIELDS)
-		return error_set(error, BP_ERROR_CORRUPT, head->head_bytes, "%u sections where fields and planes of %u layers belong", count,
-		                 model->layer_count);
+		return error_set(error, BP_ERROR_CORRUPT, head->head_bytes, "%u sections where fields and planes of %u layers belong",
+		                 count, model->layer_count);
 	decoded->dims = head->dims;
 	*failed = 0;
 	status = fields_read(&sections[0], decoded, error);
@@ -209,4 +221,4 @@ const struct profile_codec SPECTRAL_CODEC = {
 	.decode = spectral_decode,
 };
 
-const struct profile_encoder SPECTRAL_ENCODER = { .profile = PROFILE_SPECTRAL, .encode = spectral_encode };
+const struct profile_encoder SPECTRAL_ENCODER = {.profile = PROFILE_SPECTRAL, .encode = spectral_encode};

@@ -113,7 +113,8 @@ static inline float fast_exp2f(float x)
 {
 	float shifted = x + 12582912.0f; /* 1.5 2^23 */
 	float f = x - (shifted - 12582912.0f), z = f * f;
-	float q = (0.693147182f + 0.240226507f * f) + z * ((0.0555035695f + 0.00961808302f * f) + z * (0.00133908633f + 0.000154531634f * f));
+	float q = (0.693147182f + 0.240226507f * f) +
+	          z * ((0.0555035695f + 0.00961808302f * f) + z * (0.00133908633f + 0.000154531634f * f));
 	return (1 + f * q) * float_of_bits((bits_of_float(shifted) + 127) << 23);
 }
 

@@ -10,11 +10,11 @@ enum { LEVELS_MAX = 24, SWEEPS = 4 };
 
 struct fill {
 	bool wrap_rows, wrap_columns;
-	unsigned levels;              /* level 0 is the caller's plane */
+	unsigned levels; /* level 0 is the caller's plane */
 	struct fill_level level[LEVELS_MAX];
-	float *values;                /* of levels 1.., one after the other */
+	float *values; /* of levels 1.., one after the other */
 	uint8_t *valid;
-	float *row;                   /* two rows of scratch, a cell longer on both sides */
+	float *row; /* two rows of scratch, a cell longer on both sides */
 };
 
 bp_status fill_create(uint32_t rows, uint32_t columns, bool wrap_rows, bool wrap_columns, struct fill **out, bp_error *error)

@@ -38,25 +38,20 @@ static size_t KERNEL(fill_halve)(const struct fill_level *fine, const struct fil
  * A row's neighbour on either side, `size` cells long: before the first and after the last. On an axis that
  * does not wrap the border is its own neighbour.
  */
-static inline size_t KERNEL(before)(size_t i, size_t size, int wrap)
-{
-	return i ? i - 1 : wrap ? size - 1 : 0;
-}
-static inline size_t KERNEL(after)(size_t i, size_t size, int wrap)
-{
-	return i + 1 < size ? i + 1 : wrap ? 0 : i;
-}
+static inline size_t KERNEL(before)(size_t i, size_t size, int wrap) { return i ? i - 1 : wrap ? size - 1 : 0; }
+static inline size_t KERNEL(after)(size_t i, size_t size, int wrap) { return i + 1 < size ? i + 1 : wrap ? 0 : i; }
 
 /* Invalid fine cells from the coarse level: 3/4 of the parent and 1/4 of its nearer neighbour, along both axes. */
-static void KERNEL(fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows, int wrap_columns,
-                                     float *scratch)
+static void KERNEL(fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows,
+                                     int wrap_columns, float *scratch)
 {
 	const size_t n = coarse->columns, columns = fine->columns;
 	float *blend = scratch + 1; /* a coarse row with one more cell on both sides */
 
 	for (size_t r = 0; r < fine->rows; r++) {
 		const size_t parent = r / 2;
-		const size_t other = r % 2 ? KERNEL(after)(parent, coarse->rows, wrap_rows) : KERNEL(before)(parent, coarse->rows, wrap_rows);
+		const size_t other =
+			r % 2 ? KERNEL(after)(parent, coarse->rows, wrap_rows) : KERNEL(before)(parent, coarse->rows, wrap_rows);
 		const float *a = coarse->value + parent * n, *b = coarse->value + other * n;
 		float *value = fine->value + r * columns;
 		const uint8_t *valid = fine->valid + r * columns;

@@ -30,9 +30,6 @@ typedef float floats8_unaligned __attribute__((vector_size(32), aligned(4), may_
 #define LANES_SELECT(mask, yes, no) ((lanes4)(((mask4)(yes) & (mask)) | ((mask4)(no) & ~(mask))))
 #define LANES_ALL(x) ((lanes4){(x), (x), (x), (x)})
 
-static inline double lanes_sum(const lanes4 *v)
-{
-	return ((*v)[0] + (*v)[1]) + ((*v)[2] + (*v)[3]);
-}
+static inline double lanes_sum(const lanes4 *v) { return ((*v)[0] + (*v)[1]) + ((*v)[2] + (*v)[3]); }
 
 #endif

@@ -112,7 +112,8 @@ static double light_drawn(const struct importance *m, const struct lattice *latt
 			low = middle + 1;
 	}
 	const size_t row = (size_t)low * d.phi_d;
-	const double turn = (double)(m->place[low].odd * m->cos_phi[k]), i = (double)m->place[low].even - turn, o = (double)m->place[low].even + turn;
+	const double turn = (double)(m->place[low].odd * m->cos_phi[k]), i = (double)m->place[low].even - turn,
+				 o = (double)m->place[low].even + turn;
 	const bool seen = draw(state) < i + o;
 	if (i <= 0 || o <= 0 || !seen)
 		return 0;
@@ -154,7 +155,8 @@ double importance_unit(const struct importance *m, const struct lattice *lattice
 
 /* ---- weights ---- */
 
-void importance_weigh(const struct importance *m, const struct lattice *lattice, int channel, double unit, float *value, float *weight)
+void importance_weigh(const struct importance *m, const struct lattice *lattice, int channel, double unit, float *value,
+                      float *weight)
 {
 	const struct paper_kernels *kernels = paper_kernels_get();
 	const struct lattice_dims d = m->dims;

@@ -29,7 +29,8 @@ void importance_free(struct importance *importance); /* NULL is allowed */
 double importance_unit(const struct importance *importance, const struct lattice *lattice);
 
 /* A channel in units of `unit`, at most 1e15, 0 where invalid, and its weights, 0 where invalid: [cells] each. */
-void importance_weigh(const struct importance *importance, const struct lattice *lattice, int channel, double unit, float *value, float *weight);
+void importance_weigh(const struct importance *importance, const struct lattice *lattice, int channel, double unit, float *value,
+                      float *weight);
 
 /* How far a cell is seen, 0.01 to 1, and 0 where invalid: shown[cells]. */
 void importance_shown(const struct importance *importance, const struct lattice *lattice, float *shown);

@@ -1,7 +1,7 @@
 /* importance.inc.h: one row of weights. See importance.h for the formula. */
 
-static void KERNEL(importance_row)(const struct importance_place *place, const float *cos_phi, const float *value, const uint8_t *valid,
-                                   size_t n, float *weight)
+static void KERNEL(importance_row)(const struct importance_place *place, const float *cos_phi, const float *value,
+                                   const uint8_t *valid, size_t n, float *weight)
 {
 	const float seen = 2, ambient = 0.25f, bend = 0.2f, dark = 0.02f;
 	const float even = place->even, odd = place->odd, area = place->area, relative = place->relative;

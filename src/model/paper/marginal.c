@@ -7,7 +7,7 @@
 #include "model/math/fast_math.h"
 #include "paper.h"
 
-static const float DARK = 3e-4f; /* of a pixel's usual brightness: nobody sees how much darker */
+static const float DARK = 3e-4f;  /* of a pixel's usual brightness: nobody sees how much darker */
 static const double RANGE = 4.32; /* log2 20 */
 static const double SHARED_WEIGHT = 0.1;
 enum { ROUNDS = 8, TURNS = 3 }; /* of h and d by turns; of these and phi */
@@ -42,10 +42,7 @@ struct log_sums {
 	double *pair, *pair_weight, *phi, *phi_weight; /* one block, at pair */
 };
 
-static double clamped(double x, double range)
-{
-	return x > range ? range : x < -range ? -range : x;
-}
+static double clamped(double x, double range) { return x > range ? range : x < -range ? -range : x; }
 
 static void sums_gather(struct lattice_dims d, const float *value, const float *shown, struct log_sums *sums)
 {
@@ -70,10 +67,7 @@ static void sums_gather(struct lattice_dims d, const float *value, const float *
 }
 
 /* What the others leave for one index, or the value before it where nothing was measured. */
-static double mean_or(double sum, double weight, double otherwise)
-{
-	return weight > 0 ? sum / weight : otherwise;
-}
+static double mean_or(double sum, double weight, double otherwise) { return weight > 0 ? sum / weight : otherwise; }
 
 static void pairs_fit_sums(struct lattice_dims d, const struct log_sums *sums, double *h, double *j_mean)
 {
@@ -100,7 +94,8 @@ static void pairs_fit_sums(struct lattice_dims d, const struct log_sums *sums, d
 }
 
 /* phi from what h and d leave. */
-static void phi_fit(struct lattice_dims d, const float *shown, const struct log_sums *sums, const double *h, const double *j_mean, double *phi)
+static void phi_fit(struct lattice_dims d, const float *shown, const struct log_sums *sums, const double *h, const double *j_mean,
+                    double *phi)
 {
 	double explained[LATTICE_EXTENT_MAX] = {0};
 

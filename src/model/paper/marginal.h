@@ -13,8 +13,9 @@
 #include "importance.h"
 
 struct marginals {
-	float *h, *d, *phi;    /* > 0; h is 0 where a whole slice is */
-	float *rest, *measured; /* theta_h x theta_d: 2^(the mean over phi_d less h and d), within a factor of 20 of 1, and the sum of the weights */
+	float *h, *d, *phi; /* > 0; h is 0 where a whole slice is */
+	float *rest,
+		*measured; /* theta_h x theta_d: 2^(the mean over phi_d less h and d), within a factor of 20 of 1, and the sum of the weights */
 };
 
 bp_status marginals_alloc(struct lattice_dims dims, struct marginals *out, bp_error *error);

@@ -67,7 +67,8 @@ static void a_update(struct turns *t)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = lattice_index(d, i, j, 0), to = (size_t)i * d.theta_d + j;
 			double sums[2];
-			paper_kernels_get()->fit_row(c->weight + at, c->value + at, t->b + (size_t)i * d.phi_d, c->shared + (size_t)j * d.phi_d, d.phi_d, sums);
+			paper_kernels_get()->fit_row(c->weight + at, c->value + at, t->b + (size_t)i * d.phi_d,
+			                             c->shared + (size_t)j * d.phi_d, d.phi_d, sums);
 			t->a[to] = sums[1] > 0 ? (float)(sums[0] / sums[1]) : 0;
 			t->a_weight[to] = (float)sums[1];
 		}
@@ -84,8 +85,8 @@ static void b_update(struct turns *t)
 		memset(denominator, 0, d.phi_d * sizeof *denominator);
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = lattice_index(d, i, j, 0);
-			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->a[(size_t)i * d.theta_d + j], c->shared + (size_t)j * d.phi_d, d.phi_d,
-			                                 numerator, denominator);
+			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->a[(size_t)i * d.theta_d + j],
+			                                 c->shared + (size_t)j * d.phi_d, d.phi_d, numerator, denominator);
 		}
 		for (uint32_t k = 0; k < d.phi_d; k++)
 			numerator[k] = denominator[k] > 0 ? numerator[k] / denominator[k] : c->marginal.phi[k];
@@ -105,8 +106,8 @@ static void shared_update(struct turns *t)
 	for (uint32_t i = t->from; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = lattice_index(d, i, j, 0), to = (size_t)j * d.phi_d;
-			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->a[(size_t)i * d.theta_d + j], t->b + (size_t)i * d.phi_d, d.phi_d,
-			                                 t->numerator + to, c->shared_weight + to);
+			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->a[(size_t)i * d.theta_d + j],
+			                                 t->b + (size_t)i * d.phi_d, d.phi_d, t->numerator + to, c->shared_weight + to);
 		}
 	for (size_t k = 0; k < n; k++)
 		mean += (double)c->shared_weight[k] / (double)n;
@@ -205,8 +206,8 @@ static void hphi_wanted(struct turns *t)
 }
 
 /* Codes t->wanted by its coefficients; `value` becomes what they decode to. In the last turn *out gets them. */
-static bp_status pair_code(struct turns *t, struct sparse_fit *fit, enum paper_field kind, const float *weight, bool first, bool last, float *value,
-                           struct sparse_field *out, bp_error *error)
+static bp_status pair_code(struct turns *t, struct sparse_fit *fit, enum paper_field kind, const float *weight, bool first,
+                           bool last, float *value, struct sparse_field *out, bp_error *error)
 {
 	const struct lattice_dims d = t->channel->dims;
 	float *x = t->x[kind];
@@ -219,7 +220,8 @@ static bp_status pair_code(struct turns *t, struct sparse_fit *fit, enum paper_f
 		return BP_OK;
 	}
 	const float least = sparse_fit_energies(fit, weight, t->energy);
-	const float edge = sparse_fit_rounds(fit, t->wanted, weight, t->energy, least, paper_keep(d, kind), first ? ROUNDS_FIRST : 1, STEPS, t->kept, x);
+	const float edge = sparse_fit_rounds(fit, t->wanted, weight, t->energy, least, paper_keep(d, kind), first ? ROUNDS_FIRST : 1,
+	                                     STEPS, t->kept, x);
 	if (!last) {
 		wavelet_inverse(&fit->plane, x, value, fit->scratch);
 		for (size_t i = 0; i < fit->cells; i++)
@@ -254,7 +256,8 @@ static void b_from_hphi(struct turns *t)
 			t->b[(size_t)i * d.phi_d + k] = c->marginal.phi[k] * c->hphi[(size_t)i * d.phi_d + k];
 }
 
-bp_status pairs_fit(struct channel_fit *c, struct sparse_fit fit[2], struct sparse_field *hd, struct sparse_field *hphi, bp_error *error)
+bp_status pairs_fit(struct channel_fit *c, struct sparse_fit fit[2], struct sparse_field *hd, struct sparse_field *hphi,
+                    bp_error *error)
 {
 	const struct lattice_dims d = c->dims;
 	struct turns t;

@@ -17,12 +17,13 @@ struct channel_fit {
 	struct lattice_dims dims;
 	const float *value, *weight; /* [cells], of importance_weigh */
 	struct marginals marginal;
-	float level;                 /* K in the unit of value */
-	float *hd, *hphi;            /* c_hd, c_hphi as they decode */
+	float level;                   /* K in the unit of value */
+	float *hd, *hphi;              /* c_hd, c_hphi as they decode */
 	float *shared, *shared_weight; /* theta_d x phi_d: what the shared slice should be */
 };
 
 /* fit: of the two pairs' planes. The marginal of theta_h is fitted anew from 40 degrees on, and all are scaled to a mean of 1. */
-bp_status pairs_fit(struct channel_fit *channel, struct sparse_fit fit[2], struct sparse_field *hd, struct sparse_field *hphi, bp_error *error);
+bp_status pairs_fit(struct channel_fit *channel, struct sparse_fit fit[2], struct sparse_field *hd, struct sparse_field *hphi,
+                    bp_error *error);
 
 #endif

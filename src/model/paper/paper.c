@@ -6,15 +6,9 @@
 
 #include "model/math/fast_math.h"
 
-float paper_step(uint16_t code)
-{
-	return (float)fast_exp2(((int)code - PAPER_STEP_ONE) / 256.0);
-}
+float paper_step(uint16_t code) { return (float)fast_exp2(((int)code - PAPER_STEP_ONE) / 256.0); }
 
-float paper_coded(uint16_t code)
-{
-	return code ? (float)fast_exp2(((int)code - (1 << 15)) / 1024.0) : 0;
-}
+float paper_coded(uint16_t code) { return code ? (float)fast_exp2(((int)code - (1 << 15)) / 1024.0) : 0; }
 
 uint16_t paper_code(float marginal)
 {

@@ -71,13 +71,14 @@ struct paper_model {
  * *out, which paper_free frees, and the regression of each channel's measured values on its model. Nothing is kept on failure. Values from
  * 1e-300 to 1e300 are in range.
  */
-bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out, struct colour_fit colour[3],
-                    bp_error *error);
+bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out,
+                    struct colour_fit colour[3], bp_error *error);
 void paper_free(struct paper_model *paper); /* NULL is allowed */
 void sparse_field_free(struct sparse_field *field);
 
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h of a channel over the whole lattice: the model in units of its scale; >= 0 and finite. */
-bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table, bp_error *error);
+bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table,
+                               bp_error *error);
 /* See model_expand. Channels that are not there become like the one that is. */
 bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out,
                        bp_error *error);

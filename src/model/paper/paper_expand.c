@@ -17,7 +17,7 @@ struct slices {
 	struct field_codec *codec; /* of c_dphi|h */
 	float *dphi;               /* the slice's c_dphi|h */
 	bool dphi_is_one;
-	float *column;             /* f_phi c_hphi of the slice */
+	float *column; /* f_phi c_hphi of the slice */
 };
 
 /* Values stay below this, in 1/sr, so that they are finite in a MERL file too, which multiplies by 1500. Only hostile records come near. */
@@ -35,8 +35,8 @@ static void slices_free(struct slices *s)
 	field_codec_free(s->codec);
 }
 
-static bp_status pair_expand(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *field, bool loaded, float **out,
-                             bp_error *error)
+static bp_status pair_expand(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *field, bool loaded,
+                             float **out, bp_error *error)
 {
 	const struct sparse_field one = {.count = 0};
 	struct field_codec *codec = NULL;
@@ -53,7 +53,8 @@ static bp_status pair_expand(struct lattice_dims dims, enum paper_field kind, co
 	return status;
 }
 
-static bp_status slices_begin(struct lattice_dims d, const struct paper_channel *channel, uint32_t layers, struct slices *s, bp_error *error)
+static bp_status slices_begin(struct lattice_dims d, const struct paper_channel *channel, uint32_t layers, struct slices *s,
+                              bp_error *error)
 {
 	*s = (struct slices){.dims = d, .channel = channel, .with_slices = layers > PAPER_LAYER_SLICES && channel->slice_count};
 	bp_status status = pair_expand(d, PAPER_HD, &channel->hd, layers > PAPER_LAYER_PAIRS, &s->hd, error);
@@ -86,11 +87,13 @@ static void slice_expand(struct slices *s, uint32_t i, float *out)
 	for (uint32_t j = 0; j < d.theta_d; j++) {
 		float row = fminf(h * channel->marginal[1][j], FACTOR_MAX);
 		row = fminf(row * hd[j], FACTOR_MAX);
-		kernels->paper_row(row, s->column, s->dphi_is_one ? NULL : s->dphi + (size_t)j * d.phi_d, d.phi_d, out + (size_t)j * d.phi_d);
+		kernels->paper_row(row, s->column, s->dphi_is_one ? NULL : s->dphi + (size_t)j * d.phi_d, d.phi_d,
+		                   out + (size_t)j * d.phi_d);
 	}
 }
 
-bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table, bp_error *error)
+bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table,
+                               bp_error *error)
 {
 	struct slices s;
 	bp_status status = slices_begin(dims, channel, layers, &s, error);
@@ -129,7 +132,8 @@ static void channels_fill(const struct paper_model *paper, struct expansion *out
 			memcpy(out->rgb[c], out->rgb[there], lattice_cells(out->dims) * sizeof(float));
 }
 
-bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out, bp_error *error)
+bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out,
+                       bp_error *error)
 {
 	const struct lattice_dims d = paper->dims;
 	const size_t cells = (size_t)d.theta_d * d.phi_d;

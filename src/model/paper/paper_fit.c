@@ -101,14 +101,16 @@ static bp_status channel_fit(struct workshop *w, const struct lattice *lattice, 
 		out->slice_count = paper_shared_from(d.theta_h) + 1;
 		out->scale = (double)fit.level * w->unit;
 		out->slice = calloc(out->slice_count, sizeof *out->slice);
-		status = out->slice ? slices_fit(&fit, &w->slices, out->slice, error) : error_memory(error, out->slice_count * sizeof *out->slice);
+		status = out->slice ? slices_fit(&fit, &w->slices, out->slice, error)
+		                    : error_memory(error, out->slice_count * sizeof *out->slice);
 	}
 	marginals_free(&fit.marginal);
 	return status;
 }
 
 /* What a picture shows of a channel's error under a line: the weighted sum of squares, in the unit. model: w->value. */
-static double line_error(const struct workshop *w, const struct lattice *lattice, int c, double level, double diffuse, double specular)
+static double line_error(const struct workshop *w, const struct lattice *lattice, int c, double level, double diffuse,
+                         double specular)
 {
 	double sum = 0;
 
@@ -116,7 +118,8 @@ static double line_error(const struct workshop *w, const struct lattice *lattice
 		const size_t at = (size_t)row * w->dims.phi_d;
 		double of_row = 0;
 		for (size_t n = at; n < at + w->dims.phi_d; n++) {
-			const double value = diffuse + specular * level * (double)w->value[n], e = lattice->rgb[c][n] / w->unit - (value > 0 ? value : 0);
+			const double value = diffuse + specular * level * (double)w->value[n],
+						 e = lattice->rgb[c][n] / w->unit - (value > 0 ? value : 0);
 			of_row += lattice->valid[n] ? (double)w->weight[n] * e * e : 0;
 		}
 		sum += of_row;
@@ -128,7 +131,8 @@ static double line_error(const struct workshop *w, const struct lattice *lattice
  * The regression follows the many: where more than half of a channel is as good as black, its line is 0, lobe and all. Where it loses
  * that much against the model as it is, the model stays as it is.
  */
-static void colour_settle(const struct workshop *w, const struct lattice *lattice, int c, const struct paper_channel *channel, struct colour_fit *colour)
+static void colour_settle(const struct workshop *w, const struct lattice *lattice, int c, const struct paper_channel *channel,
+                          struct colour_fit *colour)
 {
 	const double level = channel->scale / w->unit;
 	const double plain = line_error(w, lattice, c, level, 0, 1);
@@ -140,7 +144,8 @@ static void colour_settle(const struct workshop *w, const struct lattice *lattic
 	}
 }
 
-bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out, struct colour_fit colour[3], bp_error *error)
+bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out,
+                    struct colour_fit colour[3], bp_error *error)
 {
 	struct paper_model *paper = calloc(1, sizeof *paper);
 	struct workshop w;

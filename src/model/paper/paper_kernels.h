@@ -15,9 +15,9 @@ struct wavelet_filter {
 
 /* Where a row of cells lies: cosines of the two directions are even -/+ odd cos(phi_d). */
 struct importance_place {
-	float even, odd;  /* cos theta_d cos theta_h, sin theta_d sin theta_h */
-	float area;       /* sin theta_h d(theta_h) sin theta_d cos theta_d: pairs of directions in a cell */
-	float relative;   /* of the relative error, which counts everywhere a little */
+	float even, odd; /* cos theta_d cos theta_h, sin theta_d sin theta_h */
+	float area;      /* sin theta_h d(theta_h) sin theta_d cos theta_d: pairs of directions in a cell */
+	float relative;  /* of the relative error, which counts everywhere a little */
 };
 
 struct paper_kernels {
@@ -39,13 +39,15 @@ struct paper_kernels {
 
 	/* pairs.c, p = u v: the sums of weight value p and of weight p^2, over the row or added to those of every column */
 	void (*fit_row)(const float *weight, const float *value, const float *u, const float *v, size_t n, double out[2]);
-	void (*fit_columns)(const float *weight, const float *value, float u, const float *v, size_t n, float *numerator, float *denominator);
+	void (*fit_columns)(const float *weight, const float *value, float u, const float *v, size_t n, float *numerator,
+	                    float *denominator);
 	/* slices.c: value/(row column) and weight (row column)^2; 0 where the product is */
-	void (*quotients)(const float *weight, const float *value, float row, const float *column, size_t n, float *quotient, float *energy);
+	void (*quotients)(const float *weight, const float *value, float row, const float *column, size_t n, float *quotient,
+	                  float *energy);
 
 	/* importance.c; normalise_row: value factor[0] factor[1] where valid, at most 1e15, below 1e-30: 0 */
-	void (*importance_row)(const struct importance_place *place, const float *cos_phi, const float *value, const uint8_t *valid, size_t n,
-	                       float *weight);
+	void (*importance_row)(const struct importance_place *place, const float *cos_phi, const float *value, const uint8_t *valid,
+	                       size_t n, float *weight);
 	void (*normalise_row)(const double *value, const uint8_t *valid, const double factor[2], size_t n, float *out);
 
 	/* paper_expand.c: out = row column dphi (NULL: 1); out = max(0, diffuse + specular out), at most limit */

@@ -45,7 +45,8 @@ void paper_plane_bands(struct lattice_dims dims, enum paper_field field, uint8_t
 
 	for (uint32_t column = 0; column < p.columns.plane * p.parts; column++)
 		for (uint32_t row = 0; row < p.rows.plane; row++)
-			band[(size_t)column * p.rows.plane + row] = (uint8_t)(level_of(p.columns, column % p.columns.plane) + level_of(p.rows, row));
+			band[(size_t)column * p.rows.plane + row] =
+				(uint8_t)(level_of(p.columns, column % p.columns.plane) + level_of(p.rows, row));
 }
 
 uint32_t paper_keep(struct lattice_dims dims, enum paper_field field)

@@ -9,17 +9,18 @@
 #include "paper_kernels.h"
 
 enum { STEPS = 6 };
-static const float LEAST_WEIGHT = 0.01f;    /* of a measured cell, beside the slice's mean: of its relative error where it is brighter than usual */
+static const float LEAST_WEIGHT =
+	0.01f; /* of a measured cell, beside the slice's mean: of its relative error where it is brighter than usual */
 static const float MISSING_WEIGHT = 0.001f; /* of a cell that was not: it is drawn to the slice's mean */
 static const float FINE = 0.0625f;
 
 struct slices {
 	uint32_t count;
 	size_t cells, coefficients;
-	float *wanted, *weight;        /* [count][cells] */
-	float *x, *energy, *gain;      /* [count][coefficients] */
-	float *least;                  /* [count], of the preconditioner */
-	uint8_t *kept;                 /* [coefficients] */
+	float *wanted, *weight;   /* [count][cells] */
+	float *x, *energy, *gain; /* [count][coefficients] */
+	float *least;             /* [count], of the preconditioner */
+	uint8_t *kept;            /* [coefficients] */
 };
 
 static void slices_free(struct slices *s)
@@ -100,7 +101,8 @@ bp_status slices_fit(const struct channel_fit *c, struct sparse_fit *fit, struct
 	bp_status status = counts ? slices_alloc(count, fit, &s, error) : error_memory(error, sizeof *counts);
 
 	for (uint32_t i = count; !status && i-- > 0;) {
-		float *x = s.x + i * s.coefficients, *wanted = s.wanted + i * s.cells, *weight = s.weight + i * s.cells, *energy = s.energy + i * s.coefficients;
+		float *x = s.x + i * s.coefficients, *wanted = s.wanted + i * s.cells, *weight = s.weight + i * s.cells,
+			  *energy = s.energy + i * s.coefficients;
 		slice_wanted(c, i, wanted, weight);
 		if (i + 1 < count)
 			memcpy(x, x + s.coefficients, s.coefficients * sizeof *x);
@@ -114,7 +116,8 @@ bp_status slices_fit(const struct channel_fit *c, struct sparse_fit *fit, struct
 	struct gain_limit limit = gain_limit_of(counts, keep);
 	const float unit = FINE * sqrtf(gain_at(limit));
 	for (uint32_t i = 0; !status && i < count; i++) {
-		float *x = s.x + i * s.coefficients, *wanted = s.wanted + i * s.cells, *weight = s.weight + i * s.cells, *energy = s.energy + i * s.coefficients;
+		float *x = s.x + i * s.coefficients, *wanted = s.wanted + i * s.cells, *weight = s.weight + i * s.cells,
+			  *energy = s.energy + i * s.coefficients;
 		for (size_t n = 0; n < s.coefficients; n++)
 			s.kept[n] = gain_kept(&limit, s.gain[i * s.coefficients + n]);
 		sparse_fit_gradient(fit, wanted, weight, x);

@@ -93,10 +93,7 @@ void sparse_fit_gains(const struct sparse_fit *fit, const float *x, const float 
 
 /* ---- the largest gains ---- */
 
-static uint32_t bin_of(float gain)
-{
-	return bits_of_float(gain) >> 17;
-}
+static uint32_t bin_of(float gain) { return bits_of_float(gain) >> 17; }
 
 void gain_count(struct gain_counts *counts, const float *gain, size_t n)
 {
@@ -126,15 +123,12 @@ bool gain_kept(struct gain_limit *limit, float gain)
 	return true;
 }
 
-float gain_at(struct gain_limit limit)
-{
-	return float_of_bits(limit.edge << 17);
-}
+float gain_at(struct gain_limit limit) { return float_of_bits(limit.edge << 17); }
 
 /* ---- refinement ---- */
 
-void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, const uint8_t *kept,
-                       uint32_t steps, float *x)
+void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
+                       const uint8_t *kept, uint32_t steps, float *x)
 {
 	const struct paper_kernels *kernels = paper_kernels_get();
 	const size_t n = fit->coefficients;
@@ -168,8 +162,8 @@ void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float 
 	}
 }
 
-float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, size_t keep,
-                       uint32_t rounds, uint32_t steps, uint8_t *kept, float *x)
+float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
+                        size_t keep, uint32_t rounds, uint32_t steps, uint8_t *kept, float *x)
 {
 	static const struct gain_counts NONE;
 	struct gain_counts counts;
@@ -205,8 +199,8 @@ bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const 
 	return !(squares > LEFT_OUT * LEFT_OUT * (double)count);
 }
 
-bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, float unit,
-                              const float *x, struct sparse_field *out, bp_error *error)
+bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
+                              float unit, const float *x, struct sparse_field *out, bp_error *error)
 {
 	const size_t n = fit->coefficients;
 	double logs = 0, largest = 0;
@@ -235,7 +229,9 @@ bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const
 		if (!level)
 			continue;
 		out->index[out->count] = (uint32_t)i;
-		out->level[out->count++] = (int32_t)(level > PAPER_LEVEL_MAX ? PAPER_LEVEL_MAX : level < -PAPER_LEVEL_MAX ? -PAPER_LEVEL_MAX : level);
+		out->level[out->count++] = (int32_t)(level > PAPER_LEVEL_MAX    ? PAPER_LEVEL_MAX
+		                                     : level < -PAPER_LEVEL_MAX ? -PAPER_LEVEL_MAX
+		                                                                : level);
 	}
 	if (!out->count) { /* a field of zeros is not a field of ones */
 		out->index[0] = 0;

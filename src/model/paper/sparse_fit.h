@@ -18,8 +18,8 @@ struct sparse_fit {
 	struct wavelet_plane plane;
 	size_t cells, coefficients;
 	float *row_squares, *column_squares;
-	float *scratch;    /* 3 planes, of the transform */
-	float *field;      /* T of something */
+	float *scratch;                                    /* 3 planes, of the transform */
+	float *field;                                      /* T of something */
 	float *gradient, *inverse, *z, *direction, *image; /* of coefficients */
 	float *gain;
 };
@@ -53,12 +53,12 @@ float gain_at(struct gain_limit limit);               /* the least gain of the e
  * Zeroes x where not kept and takes `steps` conjugate-gradient steps on those that are; fit->gradient must belong to x when called, and
  * does when it returns.
  */
-void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, const uint8_t *kept,
-                       uint32_t steps, float *x);
+void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
+                       const uint8_t *kept, uint32_t steps, float *x);
 
 /* `rounds` rounds from x, `keep` coefficients each. energy and least are of sparse_fit_energies. Returns the last round's gain_at. */
-float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, size_t keep,
-                       uint32_t rounds, uint32_t steps, uint8_t *kept, float *x);
+float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
+                        size_t keep, uint32_t rounds, uint32_t steps, uint8_t *kept, float *x);
 
 /* Whether the field is 1 within a thousandth, rms over the cells with a weight. */
 bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const float *weight);
@@ -67,7 +67,7 @@ bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const 
  * Quantises: levels of step `unit` / sqrt(the geometric mean of the energies of what is not 0). A field that is 1 is left out (count 0). The
  * caller owns out's arrays.
  */
-bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least, float unit,
-                              const float *x, struct sparse_field *out, bp_error *error);
+bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
+                              float unit, const float *x, struct sparse_field *out, bp_error *error);
 
 #endif

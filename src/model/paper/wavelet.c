@@ -9,8 +9,8 @@
 static const struct wavelet_filter FILTERS[] = {
 	[WAVELET_HAAR] = {2, {0.707106781f, 0.707106781f}, {0.707106781f, -0.707106781f}},
 	[WAVELET_DAUBECHIES] = {4,
-	                        {0.482962913f, 0.836516304f, 0.224143868f, -0.129409523f},
-	                        {-0.129409523f, -0.224143868f, 0.836516304f, -0.482962913f}},
+                            {0.482962913f, 0.836516304f, 0.224143868f, -0.129409523f},
+                            {-0.129409523f, -0.224143868f, 0.836516304f, -0.482962913f}},
 };
 
 struct wavelet_axis wavelet_axis_for(uint32_t n)
@@ -79,7 +79,8 @@ static void axis_inverse(enum wavelet kind, struct wavelet_axis axis, size_t wid
 
 void wavelet_forward(const struct wavelet_plane *p, const float *field, float *coefficient, float *scratch)
 {
-	const size_t width = (size_t)p->columns.plane * p->parts, cells = wavelet_cells(p), part = (size_t)p->columns.plane * p->rows.plane;
+	const size_t width = (size_t)p->columns.plane * p->parts, cells = wavelet_cells(p),
+				 part = (size_t)p->columns.plane * p->rows.plane;
 	float *a = scratch, *b = scratch + cells, *low = scratch + 2 * cells;
 
 	memset(a, 0, cells * sizeof *a);
@@ -98,7 +99,8 @@ void wavelet_forward(const struct wavelet_plane *p, const float *field, float *c
 
 void wavelet_inverse(const struct wavelet_plane *p, const float *coefficient, float *field, float *scratch)
 {
-	const size_t width = (size_t)p->columns.plane * p->parts, cells = wavelet_cells(p), part = (size_t)p->columns.plane * p->rows.plane;
+	const size_t width = (size_t)p->columns.plane * p->parts, cells = wavelet_cells(p),
+				 part = (size_t)p->columns.plane * p->rows.plane;
 	float *a = scratch, *b = scratch + cells, *low = scratch + 2 * cells;
 
 	for (uint32_t q = 0; q < p->parts; q++)

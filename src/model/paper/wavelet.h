@@ -34,22 +34,16 @@ struct wavelet_axis wavelet_axis_for(uint32_t n);
 /* A field of rows x columns cells and where its coefficients are. */
 struct wavelet_plane {
 	enum wavelet kind;
-	bool mirrored;                      /* along the columns' index */
+	bool mirrored; /* along the columns' index */
 	uint32_t field_columns;
-	struct wavelet_axis rows, columns;  /* columns: of one part where mirrored */
-	uint32_t parts;                     /* 2 where mirrored, else 1 */
+	struct wavelet_axis rows, columns; /* columns: of one part where mirrored */
+	uint32_t parts;                    /* 2 where mirrored, else 1 */
 };
 
 struct wavelet_plane wavelet_plane_for(enum wavelet kind, uint32_t rows, uint32_t columns, bool mirrored);
-static inline size_t wavelet_field_cells(const struct wavelet_plane *p)
-{
-	return (size_t)p->rows.field * p->field_columns;
-}
+static inline size_t wavelet_field_cells(const struct wavelet_plane *p) { return (size_t)p->rows.field * p->field_columns; }
 /* Coefficients, and values of one scratch plane. */
-static inline size_t wavelet_cells(const struct wavelet_plane *p)
-{
-	return (size_t)p->rows.plane * p->columns.plane * p->parts;
-}
+static inline size_t wavelet_cells(const struct wavelet_plane *p) { return (size_t)p->rows.plane * p->columns.plane * p->parts; }
 
 /*
  * field[rows.field * field_columns], row-major, 0 outside <-> coefficient[(part * columns.plane + column) * rows.plane + row]. Every

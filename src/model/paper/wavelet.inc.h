@@ -4,7 +4,8 @@
  * n rows of `width` values: row i of low is sum_k h_k in row (2 i + k), of high the same with g; row numbers are modulo n. n is even.
  * Two and four taps apart, so that a row is written once.
  */
-static void KERNEL(wavelet_split)(const struct wavelet_filter *f, const float *in, size_t n, size_t width, float *low, float *high)
+static void KERNEL(wavelet_split)(const struct wavelet_filter *f, const float *in, size_t n, size_t width, float *low,
+                                  float *high)
 {
 	const float h0 = f->low[0], h1 = f->low[1], g0 = f->high[0], g1 = f->high[1];
 
@@ -28,7 +29,8 @@ static void KERNEL(wavelet_split)(const struct wavelet_filter *f, const float *i
 }
 
 /* The transpose of wavelet_split, which is its inverse. */
-static void KERNEL(wavelet_join)(const struct wavelet_filter *f, const float *low, const float *high, size_t n, size_t width, float *out)
+static void KERNEL(wavelet_join)(const struct wavelet_filter *f, const float *low, const float *high, size_t n, size_t width,
+                                 float *out)
 {
 	const size_t half = n / 2;
 	const float h0 = f->low[0], h1 = f->low[1], g0 = f->high[0], g1 = f->high[1];

@@ -66,10 +66,7 @@ static int exponent_of(double largest)
 struct power {
 	double a, b;
 };
-static struct power power_of(int e)
-{
-	return (struct power){ldexp(1, e / 2), ldexp(1, e - e / 2)};
-}
+static struct power power_of(int e) { return (struct power){ldexp(1, e / 2), ldexp(1, e - e / 2)}; }
 
 /* Mean, Sxx and leverages of the scaled x. */
 static void design_prepare(struct design *design)
@@ -88,7 +85,8 @@ static void design_prepare(struct design *design)
 	kernels->robust_sums(&sample, &line, 0, &sums);
 	design->sxx = fmax(0, sums.wxx - sums.wx * (sums.wx / n));
 
-	const double inverse = design->sxx > 0 ? 1 / design->sxx : 0, mean = design->mean_x, base = 1 - 1 / n, least = 1 - LEVERAGE_MAX;
+	const double inverse = design->sxx > 0 ? 1 / design->sxx : 0, mean = design->mean_x, base = 1 - 1 / n,
+				 least = 1 - LEVERAGE_MAX;
 	for (size_t i = 0; i < design->n; i++) {
 		double d = x[i] - mean, rest = base - d * d * inverse;
 		design->excess[i] = 1 / sqrt(rest < least ? least : rest) - 1;

@@ -41,6 +41,7 @@ bool robust_anchor_place(struct robust_anchor *anchor, const struct robust_sampl
 bool robust_anchor_reaches(const struct robust_anchor *anchor, struct robust_line *line);
 
 /* What kernels->robust_sums gives for the whole sample, for a line that reaches, limit in [limit_low, limit_high]. */
-void robust_anchor_sums(const struct robust_anchor *anchor, const struct robust_line *line, double limit, struct robust_sums *out);
+void robust_anchor_sums(const struct robust_anchor *anchor, const struct robust_line *line, double limit,
+                        struct robust_sums *out);
 
 #endif

@@ -9,33 +9,33 @@ struct KERNEL(anchor_block) {
 };
 
 /* Sums of weight r^p t^i over a block, for the i of one call: all p from 0 to last[i]. */
-#define ANCHOR_SWEEP(name, i0, count0, count1, count2)                                                                         \
-	static inline void KERNEL(name)(const struct KERNEL(anchor_block) * b, const double *weight, double (*sum)[ANCHOR_T])  \
-	{                                                                                                                      \
-		lanes4 s[3][6] = {{{0}}};                                                                                      \
-		for (size_t n = 0; n < ANCHOR_BLOCK; n += 4) {                                                                 \
-			const lanes4 t = LANES_LOAD(b->t + n), r = LANES_LOAD(b->r + n);                                       \
-			lanes4 v = LANES_LOAD(weight + n), u;                                                                  \
-			for (int i = 0; i < (i0); i++)                                                                         \
-				v *= t;                                                                                        \
-			u = v;                                                                                                 \
-			for (int p = 0; p < (count0); p++, u *= r)                                                             \
-				s[0][p] += u;                                                                                  \
-			v *= t;                                                                                                \
-			u = v;                                                                                                 \
-			for (int p = 0; p < (count1); p++, u *= r)                                                             \
-				s[1][p] += u;                                                                                  \
-			v *= t;                                                                                                \
-			u = v;                                                                                                 \
-			for (int p = 0; p < (count2); p++, u *= r)                                                             \
-				s[2][p] += u;                                                                                  \
-		}                                                                                                              \
-		for (int p = 0; p < (count0); p++)                                                                             \
-			sum[p][i0] = lanes_sum(&s[0][p]);                                                                      \
-		for (int p = 0; p < (count1); p++)                                                                             \
-			sum[p][(i0) + 1] = lanes_sum(&s[1][p]);                                                                \
-		for (int p = 0; p < (count2); p++)                                                                             \
-			sum[p][(i0) + 2] = lanes_sum(&s[2][p]);                                                                \
+#define ANCHOR_SWEEP(name, i0, count0, count1, count2) \
+	static inline void KERNEL(name)(const struct KERNEL(anchor_block) *b, const double *weight, double(*sum)[ANCHOR_T]) \
+	{ \
+		lanes4 s[3][6] = {{{0}}}; \
+		for (size_t n = 0; n < ANCHOR_BLOCK; n += 4) { \
+			const lanes4 t = LANES_LOAD(b->t + n), r = LANES_LOAD(b->r + n); \
+			lanes4 v = LANES_LOAD(weight + n), u; \
+			for (int i = 0; i < (i0); i++) \
+				v *= t; \
+			u = v; \
+			for (int p = 0; p < (count0); p++, u *= r) \
+				s[0][p] += u; \
+			v *= t; \
+			u = v; \
+			for (int p = 0; p < (count1); p++, u *= r) \
+				s[1][p] += u; \
+			v *= t; \
+			u = v; \
+			for (int p = 0; p < (count2); p++, u *= r) \
+				s[2][p] += u; \
+		} \
+		for (int p = 0; p < (count0); p++) \
+			sum[p][i0] = lanes_sum(&s[0][p]); \
+		for (int p = 0; p < (count1); p++) \
+			sum[p][(i0) + 1] = lanes_sum(&s[1][p]); \
+		for (int p = 0; p < (count2); p++) \
+			sum[p][(i0) + 2] = lanes_sum(&s[2][p]); \
 	}
 
 /* At most 12 sums at a time, so that they stay in registers. */
@@ -71,8 +71,8 @@ static inline void KERNEL(anchor_add)(const double *sum, double *restrict total,
 	}
 }
 
-static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const struct robust_line *line, const struct anchor_reach *reach,
-                                  struct anchor_sums *out)
+static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const struct robust_line *line,
+                                  const struct anchor_reach *reach, struct anchor_sums *out)
 {
 	struct KERNEL(anchor_block) b;
 	double l4[ANCHOR_BLOCK];
@@ -158,7 +158,7 @@ static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const stru
 		for (int p = 0; p < ANCHOR_R; p++)
 			for (int i = 0; i < ANCHOR_T; i++)
 				out->moment[k][p][i] = total[k][p][i] + rest[k][p][i];
-	out->below = (size_t)-(below[0] + below[1] + below[2] + below[3]);
-	out->outside = (size_t)-(outside[0] + outside[1] + outside[2] + outside[3]);
+	out->below = (size_t) - (below[0] + below[1] + below[2] + below[3]);
+	out->outside = (size_t) - (outside[0] + outside[1] + outside[2] + outside[3]);
 	return true;
 }

@@ -9,7 +9,7 @@
 
 /* What the unweighted design gives once for all channels of it. */
 struct design {
-	double *x;     /* n values, scaled by 2^-x_exponent */
+	double *x;      /* n values, scaled by 2^-x_exponent */
 	double *excess; /* 1/sqrt(1 - h) - 1 */
 	double *inside; /* n + 1: values gathered around the median */
 	double *picked; /* room for x and y of robust_picks(n) observations */

@@ -29,9 +29,9 @@ struct robust_sums {
 
 /* How far the line and the scale may move from an anchor, and the bounds that follow; see robust_anchor.h. */
 struct anchor_reach {
-	double centre_y, slope;          /* largest changes of the line, its centre_x held */
-	double median_low, median_high;  /* the median stays between these */
-	double limit_low, limit_high;    /* and the residual from which on a weight is 0 between these */
+	double centre_y, slope;         /* largest changes of the line, its centre_x held */
+	double median_low, median_high; /* the median stays between these */
+	double limit_low, limit_high;   /* and the residual from which on a weight is 0 between these */
 };
 
 /* Copies of some observations: `capacity` places, of which `count` are taken. */
@@ -48,8 +48,8 @@ struct anchor_sums {
 	 * weight stays above 0; for p + i <= 2 + 2k, p <= 1 + 2k or k = 0, else 0.
 	 */
 	double moment[3][ANCHOR_R][ANCHOR_T];
-	size_t below;   /* observations that stay below the median */
-	size_t outside; /* observations whose weight stays 0 */
+	size_t below;             /* observations that stay below the median */
+	size_t outside;           /* observations whose weight stays 0 */
 	struct anchor_list *near; /* those that may cross the median */
 	struct anchor_list *edge; /* those whose weight may become or leave 0 */
 };

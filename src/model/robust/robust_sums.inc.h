@@ -6,8 +6,9 @@ enum { ROBUST_BLOCK = 512, ROBUST_GROUP = 16 };
  * Either pass is compiled twice: with the line's rest, which few samples need, and without. The argument `rested` is known at
  * each of its calls.
  */
-static inline __attribute__((always_inline)) size_t KERNEL(scale_pass)(const struct robust_sample *sample, const struct robust_line *line,
-                                                                       double low, double high, double *inside, size_t *below, bool rested)
+static inline __attribute__((always_inline))
+size_t KERNEL(scale_pass)(const struct robust_sample *sample, const struct robust_line *line, double low, double high,
+                          double *inside, size_t *below, bool rested)
 {
 	const double *x = sample->x, *y = sample->y;
 	const double *excess = sample->excess;
@@ -40,7 +41,7 @@ static inline __attribute__((always_inline)) size_t KERNEL(scale_pass)(const str
 					count += r[g][l] >= low && r[g][l] <= high;
 				}
 	}
-	*below = (size_t)-(less[0] + less[1] + less[2] + less[3]);
+	*below = (size_t) - (less[0] + less[1] + less[2] + less[3]);
 	for (size_t i = n4; i < sample->n; i++) {
 		double dy = y[i] - line->centre_y;
 		if (rested)
@@ -70,8 +71,9 @@ static inline void KERNEL(add)(double *sum, double *rest, double x)
 	*sum = t;
 }
 
-static inline __attribute__((always_inline)) void KERNEL(sums_pass)(const struct robust_sample *sample, const struct robust_line *line,
-                                                                    double inverse_scale, struct robust_sums *out, bool rested)
+static inline
+	__attribute__((always_inline)) void KERNEL(sums_pass)(const struct robust_sample *sample, const struct robust_line *line,
+                                                          double inverse_scale, struct robust_sums *out, bool rested)
 {
 	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), b = LANES_ALL(line->slope);
 	const lanes4 scale = LANES_ALL(inverse_scale), one = LANES_ALL(1), zero = LANES_ALL(0), rest_y = LANES_ALL(line->rest_y);
@@ -131,7 +133,7 @@ static inline __attribute__((always_inline)) void KERNEL(sums_pass)(const struct
 	out->wxx = sum[3] + rest[3];
 	out->wr = sum[4] + rest[4];
 	out->wxr = sum[5] + rest[5];
-	out->rejected = (size_t)-(rejected[0] + rejected[1] + rejected[2] + rejected[3]);
+	out->rejected = (size_t) - (rejected[0] + rejected[1] + rejected[2] + rejected[3]);
 }
 
 static void KERNEL(robust_sums)(const struct robust_sample *sample, const struct robust_line *line, double inverse_scale,

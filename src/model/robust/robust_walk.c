@@ -22,7 +22,8 @@ static double select_middle(double *v, size_t n, size_t k, size_t k2)
 }
 
 /* A guess at where the median lies, from the picks: four standard errors of rank wide; scratch holds one value of each. */
-static void guess_bracket(const struct robust_sample *picks, const struct robust_line *line, double *scratch, double *low, double *high)
+static void guess_bracket(const struct robust_sample *picks, const struct robust_line *line, double *scratch, double *low,
+                          double *high)
 {
 	if (!picks->n) {
 		*low = 0;
@@ -158,10 +159,7 @@ void walk_start(struct walk *walk)
 	walk->careful = false;
 }
 
-static double limit_of(const struct walk *walk, double median)
-{
-	return TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least);
-}
+static double limit_of(const struct walk *walk, double median) { return TUNING * fmax(median / MAD_TO_SIGMA, walk->sigma_least); }
 
 /*
  * Do weights of this limit feel the rounding of the line's centre, half a unit of its last places? Below 2^-37 of the limit they
@@ -177,10 +175,7 @@ static bool limit_fine(const struct robust_line *line, double limit)
  * just left a few bright observations for many dark ones, all nearly the same. A slope that is wrong in its fifth digit would
  * be forgotten only slowly in the steps after.
  */
-static bool sums_cancel(const struct robust_sums *s)
-{
-	return s->wxx - s->wx * (s->wx / s->w) < 0x1p-20 * s->wxx;
-}
+static bool sums_cancel(const struct robust_sums *s) { return s->wxx - s->wx * (s->wx / s->w) < 0x1p-20 * s->wxx; }
 
 /* The same line about the weighted mean. */
 static void line_recentre(struct robust_line *line, double mean_dx, bool careful)
@@ -254,10 +249,7 @@ struct stride {
 };
 
 /* How far the median may change in so many steps, relative. */
-static double sway_of(double spread, double steps)
-{
-	return fmin(0.25, fmax(steps * spread, 1e-4));
-}
+static double sway_of(double spread, double steps) { return fmin(0.25, fmax(steps * spread, 1e-4)); }
 
 static const double HORIZONS[] = {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
 enum { HORIZON_COUNT = sizeof HORIZONS / sizeof *HORIZONS };
@@ -331,10 +323,7 @@ void walk_step(struct walk *walk, uint32_t left)
 }
 
 /* |a - b| <= tolerance max(|a|, |b|) */
-static bool close_to(double a, double b, double tolerance)
-{
-	return fabs(a - b) <= tolerance * fmax(fabs(a), fabs(b));
-}
+static bool close_to(double a, double b, double tolerance) { return fabs(a - b) <= tolerance * fmax(fabs(a), fabs(b)); }
 
 bool line_settled(const struct robust_line *from, const struct robust_line *to)
 {

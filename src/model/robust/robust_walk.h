@@ -25,14 +25,14 @@ struct expectation {
 struct walk {
 	const struct robust_kernels *kernels;
 	struct robust_sample sample, picks;
-	double *inside;           /* n + 1: values gathered around the median */
+	double *inside; /* n + 1: values gathered around the median */
 	double sigma_least;
-	struct robust_line line;  /* where it stands */
+	struct robust_line line; /* where it stands */
 	struct expectation next;
-	struct robust_sums sums;  /* of the last step */
-	struct robust_line before; /* and where it stood one step ago */
-	double lack;   /* what rounding took from line.centre_y */
-	bool careful;  /* the residuals are so small that it counts: line.rest_y = lack */
+	struct robust_sums sums;      /* of the last step */
+	struct robust_line before;    /* and where it stood one step ago */
+	double lack;                  /* what rounding took from line.centre_y */
+	bool careful;                 /* the residuals are so small that it counts: line.rest_y = lack */
 	struct robust_anchor *anchor; /* NULL where there is none */
 };
 

@@ -21,7 +21,8 @@ void albedo_integrate(const struct table *table, float theta_o, float rgb[3])
 	const float sine = sinf(theta_o), cosine = cosf(theta_o);
 	for (int turn = 0; turn < TURNS; turn++) {
 		/* five times as dense about phi_h = 0, where wi = wo lies: a retroreflector's peak is narrower than even steps */
-		const double even = (turn + 0.5) / TURNS * 2 * 3.14159265358979324, phi = even - 0.8 * sin(even), per = 1 - 0.8 * cos(even);
+		const double even = (turn + 0.5) / TURNS * 2 * 3.14159265358979324, phi = even - 0.8 * sin(even),
+					 per = 1 - 0.8 * cos(even);
 		const float cx = (float)cos(phi), cy = (float)sin(phi), top = horizon_s(sine, cosine, cx);
 		for (int n = 0; n < STEPS; n++) {
 			const float a = (float)n / STEPS, b = (float)(n + 1) / STEPS, q = ((float)n + 0.5f) / STEPS;
@@ -36,8 +37,8 @@ void albedo_integrate(const struct table *table, float theta_o, float rgb[3])
 			/* f cos theta_i 4 (wo.h) 2 ds dphi; b^4 - a^4 without cancellation */
 			weight[n] = z > 0 ? z * 4 * dot * 2 * top * ((b - a) * (b + a) * (b * b + a * a)) : 0;
 		}
-		table_evaluate_batch(table, STEPS, (const float *const[]){in[0], in[1], in[2]}, (const float *const[]){in[3], in[4], in[5]},
-		                     (float *const[]){value[0], value[1], value[2]});
+		table_evaluate_batch(table, STEPS, (const float *const[]){in[0], in[1], in[2]},
+		                     (const float *const[]){in[3], in[4], in[5]}, (float *const[]){value[0], value[1], value[2]});
 		for (int c = 0; c < 3; c++) {
 			double part = 0;
 			for (int n = 0; n < STEPS; n++)
@@ -98,15 +99,9 @@ bp_status albedo_cache_make(struct albedo_cache **out, bp_error *error)
 	return BP_OK;
 }
 
-void albedo_cache_free(struct albedo_cache *cache)
-{
-	memory_free_kept(cache);
-}
+void albedo_cache_free(struct albedo_cache *cache) { memory_free_kept(cache); }
 
-size_t albedo_cache_bytes(void)
-{
-	return sizeof(struct albedo_cache);
-}
+size_t albedo_cache_bytes(void) { return sizeof(struct albedo_cache); }
 
 void albedo_cached(struct albedo_cache *cache, const struct table *table, float theta_o, float rgb[3])
 {

@@ -23,7 +23,8 @@ static inline float horizon_choice(uint32_t all_bits, float yes, float no)
 static inline float horizon_s(float sine, float cosine, float cos_phi)
 {
 	const float root_half = 0.707106781f;
-	float forward = sine * cos_phi, f = fabsf(forward), r = sqrtf(forward * forward + cosine * cosine), sum = r + f, g = sqrtf(r * sum);
+	float forward = sine * cos_phi, f = fabsf(forward), r = sqrtf(forward * forward + cosine * cosine), sum = r + f,
+		  g = sqrtf(r * sum);
 	uint32_t back = 0 - (bits_of_float(cos_phi) >> 31);
 	float low = horizon_choice(back, g, r) * (g + horizon_choice(back, sum, cosine) * root_half);
 	return 0.25f * horizon_choice(back, cosine * cosine, sum * g) / low;

@@ -19,10 +19,7 @@ struct outgoing {
 	float share; /* of the next */
 };
 
-static inline float squared_length(const float w[3])
-{
-	return w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
-}
+static inline float squared_length(const float w[3]) { return w[0] * w[0] + w[1] * w[1] + w[2] * w[2]; }
 
 /*
  * The least cosine that is told apart, of 89.977 degrees: nearer to grazing the half-angle of wi and wo hangs on the rounding of
@@ -84,18 +81,21 @@ static inline float node_density(const struct sampler *p, int node, int phi, int
 static float density(const struct sampler *p, const struct outgoing *o, const float wi[3], float squared)
 {
 	float n = direction_normaliser(squared), ix = wi[0] * n, iy = wi[1] * n, iz = wi[2] * n;
-	float hx = ix + o->x, hy = iy + o->y, hz = iz + o->z, ring = hx * hx + hy * hy, length2 = ring + hz * hz, length = sqrtf(length2);
+	float hx = ix + o->x, hy = iy + o->y, hz = iz + o->z, ring = hx * hx + hy * hy, length2 = ring + hz * hz,
+		  length = sqrtf(length2);
 	float along = hx * o->ex + hy * o->ey, across = hy * o->ex - hx * o->ey;
 	/* sin^2(theta_h / 2) = sin^2 theta_h / (2 (1 + cos theta_h)), without cancellation */
 	float s = 0.5f * ring / (length2 + length * hz);
 	float cos_phi = ring > 0 ? along / sqrtf(ring) : 1;
 	/* |phi_h|, in quarter turns: 2 less where along < 0 */
-	float turns = fabsf(horizon_choice(0 - (bits_of_float(along) >> 31), 2, 0) - turns_of_squares(across * across, along * along));
+	float turns =
+		fabsf(horizon_choice(0 - (bits_of_float(along) >> 31), 2, 0) - turns_of_squares(across * across, along * along));
 	int phi = (int)(turns * (PHIS / 2)), bin = s_bin(p, s);
 	phi = phi < PHIS ? phi : PHIS - 1;
 	struct cut top = cut_at(p, horizon_s(o->sine, o->z, cos_phi));
 	float above = cumulative(p->s_mass[o->node][phi], top), above_next = cumulative(p->s_mass[o->node + 1][phi], top);
-	float lobe = (1 - o->share) * node_density(p, o->node, phi, bin) * above_next + o->share * node_density(p, o->node + 1, phi, bin) * above;
+	float lobe = (1 - o->share) * node_density(p, o->node, phi, bin) * above_next +
+	             o->share * node_density(p, o->node + 1, phi, bin) * above;
 	/* per unit of s and phi (both signs), per solid angle of h, then of wi: wo.h = |wi + wo| / 2 */
 	lobe *= PHIS / (2 * PI_F) / 4 * p->s_per[bin] / (above * above_next * length);
 	return COSINE_SHARE / PI_F * iz + (1 - COSINE_SHARE) * lobe;

@@ -143,12 +143,6 @@ bp_status sampler_build(const struct table *table, struct sampler **out, bp_erro
 	return BP_OK;
 }
 
-void sampler_free(struct sampler *sampler)
-{
-	memory_free_kept(sampler);
-}
+void sampler_free(struct sampler *sampler) { memory_free_kept(sampler); }
 
-size_t sampler_bytes(const struct sampler *sampler)
-{
-	return sizeof *sampler;
-}
+size_t sampler_bytes(const struct sampler *sampler) { return sizeof *sampler; }

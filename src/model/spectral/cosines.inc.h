@@ -1,5 +1,5 @@
 /* cosines.inc.h: the steps of cosines.h, on rows of 16 values. See spectral_kernels.h. */
-#define ROW(p, k) ((p) + (size_t)(k) * 16)
+#define ROW(p, k) ((p) + (size_t)(k)*16)
 
 static void KERNEL(cosine_fold)(const float *x, size_t n, float *sum, float *difference)
 {
@@ -41,7 +41,8 @@ static void KERNEL(cosine_join)(const float *a, const float *b, size_t n, float 
 }
 
 /* Eight rows of eight, from_stride apart, become eight columns, to_stride apart. */
-static inline __attribute__((always_inline)) void KERNEL(transpose8)(const float *from, size_t from_stride, float base, float *to, size_t to_stride)
+static inline __attribute__((always_inline)) void KERNEL(transpose8)(const float *from, size_t from_stride, float base, float *to,
+                                                                     size_t to_stride)
 {
 	typedef KERNEL(floats8) vector;
 	vector r[8], s[8];

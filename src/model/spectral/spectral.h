@@ -33,7 +33,7 @@ enum { SPECTRAL_PLANES_MAX = 24 }; /* |level| < 2^24 */
 
 /* A level that is not 0. */
 struct spectral_level {
-	uint32_t at;   /* field * cells + place in the spectrum (row, column, lane) */
+	uint32_t at; /* field * cells + place in the spectrum (row, column, lane) */
 	int32_t level;
 };
 
@@ -43,15 +43,17 @@ struct spectral_level {
  */
 struct spectral_model {
 	struct lattice_dims dims;
-	double unit;          /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
-	float base[3];        /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
-	float rotation[3][3]; /* orthonormal */
+	double unit; /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
+	float base
+		[3]; /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
+	float rotation[3][3];              /* orthonormal */
 	uint8_t weights[SPECTRAL_WEIGHTS]; /* spectral_weights.h */
 	float *coefficient[3]; /* fitted: spectra of the three fields, divided by the weights' factors; NULL when decoded */
 	bool noisy;            /* fitted: noise was found and drawn towards 0 */
 
-	float step;            /* decoded, as all that follows */
-	float centre[3];       /* where values of |level| 1 and of larger ones lie beyond it, in steps; and for levels whose last planes are not there, as a share of what is missing */
+	float step; /* decoded, as all that follows */
+	float centre
+		[3]; /* where values of |level| 1 and of larger ones lie beyond it, in steps; and for levels whose last planes are not there, as a share of what is missing */
 	uint32_t planes;
 	uint32_t end[LAYERS_MAX];
 	struct spectral_level *levels; /* ordered by field and harmonic */
@@ -59,8 +61,8 @@ struct spectral_model {
 };
 
 /* *out, which spectral_free frees, and the regression of each channel on the measured mean of the three. Nothing is kept on failure. */
-bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out, struct colour_fit colour[3],
-                       bp_error *error);
+bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out,
+                       struct colour_fit colour[3], bp_error *error);
 /* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
 float spectral_most(double unit);
 bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error);
@@ -70,7 +72,8 @@ bp_status spectral_expand_half(const struct spectral_model *model, uint32_t laye
  * The same, or with `half` the half, as 16-bit floats of table.h's expanded form in units of SPECTRAL_CODES_UNIT times the model's unit:
  * `channels` of them for every cell, 3 or 1, the channels' mean; rows of phi_d begin `stride` codes apart. No table of floats is made.
  */
-bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error);
+bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out,
+                                size_t stride, bp_error *error);
 void spectral_free(struct spectral_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
@@ -87,7 +90,8 @@ bp_status spectral_denoise(struct lattice_dims dims, float *coefficient, bool *n
  * about so many bytes with such weights.
  */
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3],
-                          const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3], bp_error *error);
+                           const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3],
+                           bp_error *error);
 
 /* spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. */
 bp_status spectral_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], bp_error *error);

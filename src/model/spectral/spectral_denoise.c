@@ -147,7 +147,8 @@ static void squares_fill(struct lattice_dims d, const float *c, struct rectangle
 	memset(out + ((size_t)band.columns + 1) * (d.phi_d + 2), 0, (d.phi_d + 2) * sizeof *out);
 }
 
-static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, const struct noise *noise, struct squares *squares)
+static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, const struct noise *noise,
+                        struct squares *squares)
 {
 	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const uint32_t columns = d.theta_d / 2, p = d.phi_d;
@@ -164,8 +165,8 @@ static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, 
 			const int count = high * (1 + (x > 0) + (x + 1 < band.columns)) + 1; /* the two halves */
 			const size_t at = (size_t)x * (p + 2) + 1;
 			const float *const around[3] = {row[0] + at, row[1] + at, row[2] + at};
-			kernels->spectral_shrink(c + ((size_t)(band.row + y) * d.theta_d + band.column + x) * p, around, (size_t)p + 2, noise->factor,
-			                        LAMBDA * sigma * sigma * (float)count, p);
+			kernels->spectral_shrink(c + ((size_t)(band.row + y) * d.theta_d + band.column + x) * p, around, (size_t)p + 2,
+			                         noise->factor, LAMBDA * sigma * sigma * (float)count, p);
 		}
 	}
 }

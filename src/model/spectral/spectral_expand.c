@@ -16,7 +16,8 @@ float spectral_most(double unit)
 	return exponent > 1011 - 40 ? (float)(1011 - exponent) : 40;
 }
 
-bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error)
+bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user,
+                                 bp_error *error)
 {
 	const struct lattice_dims d = model->dims;
 	const size_t rows = (size_t)d.theta_h * d.theta_d, cells = rows * SPECTRUM_BLOCK;
@@ -32,7 +33,10 @@ bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t la
 	for (uint32_t k = 0; !status && k < d.phi_d; k += SPECTRUM_BLOCK) {
 		const struct spectral_block block = {
 			.field = {planes, planes + cells, planes + 2 * cells},
-			.rows = rows, .column = k, .width = d.phi_d - k < SPECTRUM_BLOCK ? d.phi_d - k : SPECTRUM_BLOCK, .stride = SPECTRUM_BLOCK,
+			.rows = rows,
+			.column = k,
+			.width = d.phi_d - k < SPECTRUM_BLOCK ? d.phi_d - k : SPECTRUM_BLOCK,
+			.stride = SPECTRUM_BLOCK,
 		};
 		for (size_t f = 0; f < 3; f++)
 			spectrum_inverse_block(inverse, terms.term, terms.start + f * d.phi_d, k, planes + f * cells);
@@ -56,8 +60,8 @@ static void values_take(void *user, const struct spectral_block *block)
 	const size_t p = target->out->dims.phi_d, at = block->row * p + block->column;
 	float *const rgb[3] = {target->out->rgb[0] + at, target->out->rgb[1] + at, target->out->rgb[2] + at};
 
-	spectral_kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
-	                                        spectral_most(m->unit), rgb, p);
+	spectral_kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base,
+	                                        (const float(*)[3])m->rotation, spectral_most(m->unit), rgb, p);
 }
 
 bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error)
@@ -80,11 +84,13 @@ static void codes_take(void *user, const struct spectral_block *block)
 	const struct spectral_model *m = target->model;
 	uint16_t *out = target->out + block->row * target->stride + (size_t)block->column * (size_t)target->channels;
 
-	spectral_kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base, (const float(*)[3])m->rotation,
-	                                       spectral_most(m->unit), target->channels, out, target->stride);
+	spectral_kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base,
+	                                       (const float(*)[3])m->rotation, spectral_most(m->unit), target->channels, out,
+	                                       target->stride);
 }
 
-bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out, size_t stride, bp_error *error)
+bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out,
+                                size_t stride, bp_error *error)
 {
 	struct codes_target target = {model, channels, out, stride};
 	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, codes_take, &target, error);

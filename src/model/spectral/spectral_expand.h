@@ -16,8 +16,10 @@ struct spectral_block {
 typedef void spectral_block_fn(void *user, const struct spectral_block *block);
 
 /* Every cell once, in blocks of SPECTRUM_BLOCK cells of all rows. */
-bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error);
+bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user,
+                                 bp_error *error);
 /* The table of every second value, whole rows in their order. The model's extents must be even; decoded models only. */
-bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error);
+bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user,
+                                      bp_error *error);
 
 #endif

@@ -14,7 +14,10 @@
 #include "spectral_terms.h"
 #include "spectral_kernels.h"
 
-enum { COLUMNS_STEP = 16, ROWS_STEP = 16 }; /* cosine_product works on so many columns at once; rows whose fields stay in the nearest cache */
+enum {
+	COLUMNS_STEP = 16,
+	ROWS_STEP = 16
+}; /* cosine_product works on so many columns at once; rows whose fields stay in the nearest cache */
 
 /* One field's harmonics in use, and their values at the rows that are wanted. */
 struct narrow {
@@ -25,8 +28,8 @@ struct narrow {
 };
 
 /* SPECTRUM_BLOCK harmonics from the n-th in use on: plane[theta_h][theta_d][harmonic], its even rows and columns to n->value. */
-static void harmonics_invert(const struct spectrum_inverse *inverse, const struct spectral_terms *terms, const uint32_t *start, struct narrow *n,
-                             uint32_t first, float *plane)
+static void harmonics_invert(const struct spectrum_inverse *inverse, const struct spectral_terms *terms, const uint32_t *start,
+                             struct narrow *n, uint32_t first, float *plane)
 {
 	const struct lattice_dims d = inverse->dims;
 	const uint32_t count = n->count - first < SPECTRUM_BLOCK ? n->count - first : SPECTRUM_BLOCK;
@@ -44,8 +47,8 @@ static void harmonics_invert(const struct spectrum_inverse *inverse, const struc
 			       plane + (2 * (size_t)i * d.theta_d + 2 * (size_t)j) * SPECTRUM_BLOCK, SPECTRUM_BLOCK * sizeof *plane);
 }
 
-static bp_status narrow_make(const struct spectrum_inverse *inverse, const struct spectral_terms *terms, const uint32_t *start, size_t columns,
-                             float *plane, struct narrow *out, bp_error *error)
+static bp_status narrow_make(const struct spectrum_inverse *inverse, const struct spectral_terms *terms, const uint32_t *start,
+                             size_t columns, float *plane, struct narrow *out, bp_error *error)
 {
 	const struct lattice_dims d = inverse->dims;
 
@@ -68,7 +71,8 @@ static bp_status narrow_make(const struct spectrum_inverse *inverse, const struc
 	return BP_OK;
 }
 
-bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user, bp_error *error)
+bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user,
+                                      bp_error *error)
 {
 	const struct lattice_dims d = model->dims, h = {d.theta_h / 2, d.theta_d / 2, d.phi_d / 2};
 	const size_t columns = (h.phi_d + COLUMNS_STEP - 1) / COLUMNS_STEP * COLUMNS_STEP, piece = ROWS_STEP * columns;
@@ -89,11 +93,14 @@ bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32
 	for (size_t r = 0; !status && r < rows; r += ROWS_STEP) {
 		const struct spectral_block block = {
 			.field = {fields, fields + piece, fields + 2 * piece},
-			.row = r, .rows = rows - r < ROWS_STEP ? rows - r : ROWS_STEP, .width = h.phi_d, .stride = columns,
+			.row = r,
+			.rows = rows - r < ROWS_STEP ? rows - r : ROWS_STEP,
+			.width = h.phi_d,
+			.stride = columns,
 		};
 		for (size_t f = 0; f < 3; f++)
-			spectral_kernels_get()->cosine_product(narrow[f].value + r * narrow[f].stride, narrow[f].stride, block.rows, narrow[f].count, narrow[f].matrix,
-			                              columns, fields + f * piece, columns);
+			spectral_kernels_get()->cosine_product(narrow[f].value + r * narrow[f].stride, narrow[f].stride, block.rows,
+			                                       narrow[f].count, narrow[f].matrix, columns, fields + f * piece, columns);
 		take(user, &block);
 	}
 	for (int f = 0; f < 3; f++) {

@@ -20,9 +20,9 @@ enum {
 
 /* A piece of a row with invalid cells: a whole number of PIECEs long, but for the row's end. */
 struct run {
-	uint32_t at, count, filled;  /* filled: where its marks begin */
-	int32_t neighbour[4];        /* how far away the same piece is in the rows around; mirrored at the table's ends */
-	int8_t first, last;          /* whether the row begins or ends here */
+	uint32_t at, count, filled; /* filled: where its marks begin */
+	int32_t neighbour[4];       /* how far away the same piece is in the rows around; mirrored at the table's ends */
+	int8_t first, last;         /* whether the row begins or ends here */
 };
 
 struct runs {
@@ -36,7 +36,9 @@ static struct run run_at(struct lattice_dims d, uint32_t row, uint32_t column, u
 	const uint32_t i = row / d.theta_d, j = row % d.theta_d;
 	const int32_t p = (int32_t)d.phi_d, slice = (int32_t)(d.theta_d * d.phi_d);
 	return (struct run){
-		.at = row * d.phi_d + column, .filled = marks, .first = column == 0,
+		.at = row * d.phi_d + column,
+		.filled = marks,
+		.first = column == 0,
 		.neighbour = {j ? -p : p, j + 1 < d.theta_d ? p : -p, i ? -slice : slice, i + 1 < d.theta_h ? slice : -slice},
 	};
 }
@@ -92,9 +94,10 @@ static void sweep(const struct runs *runs, int backwards, float *table)
 	for (uint32_t n = 0; n < runs->count; n++) {
 		const struct run *run = &runs->run[backwards ? runs->count - 1 - n : n];
 		float *x = table + run->at;
-		const float *const neighbour[4] = {x + run->neighbour[0], x + run->neighbour[1], x + run->neighbour[2], x + run->neighbour[3]};
+		const float *const neighbour[4] = {x + run->neighbour[0], x + run->neighbour[1], x + run->neighbour[2],
+		                                   x + run->neighbour[3]};
 		kernels->spectral_smooth(x, runs->filled + run->filled, neighbour, run->count, run->first ? x[0] : x[-1],
-		                        run->last ? x[run->count - 1] : x[run->count]);
+		                         run->last ? x[run->count - 1] : x[run->count]);
 	}
 }
 

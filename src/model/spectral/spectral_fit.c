@@ -76,9 +76,7 @@ static void rotation_find(float *const channel[3], size_t rows, size_t lanes, fl
 		const float *const x[3] = {channel[0] + r * lanes, channel[1] + r * lanes, channel[2] + r * lanes};
 		kernels->spectral_moments(x, lanes, moment);
 	}
-	double a[3][3] = {
-		{moment[0], moment[1], moment[2]}, {moment[1], moment[3], moment[4]}, {moment[2], moment[4], moment[5]}
-	};
+	double a[3][3] = {{moment[0], moment[1], moment[2]}, {moment[1], moment[3], moment[4]}, {moment[2], moment[4], moment[5]}};
 	eigenvectors(a, v);
 	for (int i = 0; i < 3; i++)
 		for (int j = i + 1; j < 3; j++)
@@ -126,14 +124,16 @@ static bp_status logs_make(const struct lattice *lattice, const int order[3], st
 
 	stage_enter(STAGE_CLEAN);
 	for (int k = 0; k < 3; k++) {
-		const double sum = spectral_kernels_get()->spectral_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit, fitted->coefficient[k]);
+		const double sum = spectral_kernels_get()->spectral_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit,
+		                                                         fitted->coefficient[k]);
 		fitted->base[order[k]] = (float)(sum / (double)lattice->valid_count);
 	}
 	return spectral_fill(lattice->dims, lattice->valid, fitted->coefficient, error);
 }
 
 /* Tables of logarithms become spectra, still of channels; rotation: their axes, of the channels in that order. */
-static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const int order[3], struct spectral_model *fitted, float rotation[3][3])
+static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const int order[3], struct spectral_model *fitted,
+                         float rotation[3][3])
 {
 	stage_enter(STAGE_TRANSFORM);
 	for (int k = 0; k < 3; k++)
@@ -142,14 +142,15 @@ static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const
 }
 
 /* Spectra of channels become those of fields. */
-static bp_status fields_make(struct lattice_dims d, const int order[3], const float rotation[3][3], bool denoise, const struct watch *watch,
-                             struct spectral_model *fitted, bp_error *error)
+static bp_status fields_make(struct lattice_dims d, const int order[3], const float rotation[3][3], bool denoise,
+                             const struct watch *watch, struct spectral_model *fitted, bp_error *error)
 {
 	const size_t rows = (size_t)d.theta_h * d.theta_d;
 	bp_status status = BP_OK;
 
 	for (size_t r = 0; r < rows; r++) {
-		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d, fitted->coefficient[2] + r * d.phi_d};
+		float *const x[3] = {fitted->coefficient[0] + r * d.phi_d, fitted->coefficient[1] + r * d.phi_d,
+		                     fitted->coefficient[2] + r * d.phi_d};
 		spectral_kernels_get()->spectral_rotate(x, d.phi_d, rotation);
 	}
 	for (int f = 0; f < 3; f++)
@@ -167,8 +168,8 @@ static bp_status fields_make(struct lattice_dims d, const int order[3], const fl
 static const int PROJECTIONS[10] = {0, 0, 0, 0, 0, 0, 1, 2, 4, 8};
 
 /* fields_make after better values have been found for the invalid cells; noise would only be carried on into them. */
-static bp_status fields_improve(const struct lattice *lattice, const struct fit_options *options, struct spectrum *spectrum, const int order[3],
-                                const float *filled, struct spectral_model *fitted, bp_error *error)
+static bp_status fields_improve(const struct lattice *lattice, const struct fit_options *options, struct spectrum *spectrum,
+                                const int order[3], const float *filled, struct spectral_model *fitted, bp_error *error)
 {
 	const float base[3] = {fitted->base[order[0]], fitted->base[order[1]], fitted->base[order[2]]};
 	float rotation[3][3];
@@ -203,8 +204,8 @@ static bp_status weights_divide(struct spectral_model *fitted, bp_error *error)
 	return BP_OK;
 }
 
-bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out, struct colour_fit colour[3],
-                       bp_error *error)
+bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out,
+                       struct colour_fit colour[3], bp_error *error)
 {
 	const struct lattice_dims d = lattice->dims;
 	const size_t cells = lattice_cells(d);

@@ -52,14 +52,14 @@ struct spectral_kernels {
 	 * cells, `stride` apart in the fields (where it is 16, of at most 16 cells) and rgb_stride apart in rgb.
 	 */
 	void (*spectral_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-	                       const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride);
+	                        const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride);
 
 	/*
 	 * The same as 16-bit floats of table.h's expanded form, in units of 2^39 (that of l = 40 is 65535): `channels` of them for
 	 * every cell, or 1, the channels' mean; rows of `width` cells are out_stride codes apart.
 	 */
 	void (*spectral_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-	                      const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride);
+	                       const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride);
 
 	/* field_f = sum over c of rotation[f][c] x_c, in place. */
 	void (*spectral_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
@@ -75,7 +75,8 @@ struct spectral_kernels {
 	 * x_q times max(0, 1 - threshold factor_q / e_q), e being the sum of the squares of the 3 x 3 coefficients around and, half as much
 	 * each, of the lanes before and after. square[r] + q + s stride: those of row r - 1 and column s - 1.
 	 */
-	void (*spectral_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold, size_t n);
+	void (*spectral_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold,
+	                        size_t n);
 };
 
 extern const struct spectral_kernels spectral_kernels_plain, spectral_kernels_avx2;

@@ -32,8 +32,8 @@ struct projection {
 	uint32_t room; /* terms */
 };
 
-static bp_status projection_create(struct lattice_dims d, const uint8_t weights[SPECTRAL_WEIGHTS], uint32_t room, struct projection *out,
-                                   bp_error *error)
+static bp_status projection_create(struct lattice_dims d, const uint8_t weights[SPECTRAL_WEIGHTS], uint32_t room,
+                                   struct projection *out, bp_error *error)
 {
 	const size_t cells = lattice_cells(d), rows = (size_t)d.theta_h * d.theta_d;
 
@@ -99,7 +99,8 @@ static void channel_project(const struct projection *p, const uint8_t *valid, fl
 }
 
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, const uint8_t *valid, const float base[3],
-                          const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3], bp_error *error)
+                           const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3],
+                           bp_error *error)
 {
 	const size_t cells = lattice_cells(d);
 	const double wanted = fmin(budget_bytes * 8 / BITS_EACH / 4, (double)cells); /* of one channel, which are much alike */

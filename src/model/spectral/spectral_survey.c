@@ -23,15 +23,13 @@ static size_t common_divisor(size_t a, size_t b)
 	return a;
 }
 
-void spectral_survey_free(struct spectral_survey *sample)
-{
-	free(sample->x);
-}
+void spectral_survey_free(struct spectral_survey *sample) { free(sample->x); }
 
 bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_survey *out, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims), p = lattice->dims.phi_d;
-	size_t every = lattice->valid_count / SAMPLE + 1, n = 0; /* one cell of so many; no common factor: another phi_d in every row */
+	size_t every = lattice->valid_count / SAMPLE + 1,
+		   n = 0; /* one cell of so many; no common factor: another phi_d in every row */
 	double *y[3];
 
 	while (common_divisor(every, p) != 1)
@@ -75,8 +73,11 @@ bp_status spectral_survey_colour(const struct spectral_survey *sample, struct co
 		bp_status status = robust_fit(sample->x, sample->y[c], sample->n, &fit, error);
 		if (status)
 			return status;
-		colour[c] = (struct colour_fit){.diffuse = fit.intercept, .specular = fit.slope, .iterations = fit.iterations,
-		                              .converged = fit.converged, .rejected = (double)fit.rejected / (double)sample->n};
+		colour[c] = (struct colour_fit){.diffuse = fit.intercept,
+		                                .specular = fit.slope,
+		                                .iterations = fit.iterations,
+		                                .converged = fit.converged,
+		                                .rejected = (double)fit.rejected / (double)sample->n};
 	}
 	return BP_OK;
 }
@@ -123,4 +124,3 @@ void spectral_survey_order(const struct spectral_survey *sample, int order[3])
 		order[at] = c;
 	}
 }
-

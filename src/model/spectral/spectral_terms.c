@@ -6,7 +6,8 @@
 
 uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic)
 {
-	const uint32_t first = field * harmonics + harmonic, period = 3 * harmonics; /* in the highest plane, and from plane to plane */
+	const uint32_t first = field * harmonics + harmonic,
+				   period = 3 * harmonics; /* in the highest plane, and from plane to plane */
 	return end > first ? planes - 1 - (end - 1 - first) / period : planes;
 }
 
@@ -49,7 +50,8 @@ static void terms_of_levels(const struct spectral_model *model, const struct spe
 }
 
 /* A fitted model has hardly a coefficient that is exactly 0: this is correct rather than quick. */
-static void terms_of_coefficients(const struct spectral_model *model, const struct spectrum_inverse *inverse, struct spectral_terms *out)
+static void terms_of_coefficients(const struct spectral_model *model, const struct spectrum_inverse *inverse,
+                                  struct spectral_terms *out)
 {
 	const struct lattice_dims d = inverse->dims;
 	uint32_t n = 0;
@@ -65,7 +67,7 @@ static void terms_of_coefficients(const struct spectral_model *model, const stru
 }
 
 bp_status spectral_terms_make(const struct spectral_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
-                             struct spectral_terms *out, bp_error *error)
+                              struct spectral_terms *out, bp_error *error)
 {
 	const size_t room = model->coefficient[0] ? 3 * lattice_cells(inverse->dims) : model->level_count;
 

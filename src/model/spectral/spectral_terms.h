@@ -14,7 +14,7 @@ struct spectral_terms {
 
 /* What the first `layers` layers hold of a decoded model, or all of a fitted one. Free it also after a failure. */
 bp_status spectral_terms_make(const struct spectral_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
-                             struct spectral_terms *out, bp_error *error);
+                              struct spectral_terms *out, bp_error *error);
 void spectral_terms_free(struct spectral_terms *terms);
 
 #endif

@@ -58,8 +58,9 @@ static void KERNEL(spectral_moments)(const float *const x[3], size_t n, double s
 	const lanes4 one = LANES_ALL(1.0);
 
 	for (size_t k = 0; k + 4 <= n; k += 4) {
-		const lanes4 r = __builtin_convertvector(FLOATS_LOAD(x[0] + k), lanes4), s = __builtin_convertvector(FLOATS_LOAD(x[1] + k), lanes4),
-			     t = __builtin_convertvector(FLOATS_LOAD(x[2] + k), lanes4);
+		const lanes4 r = __builtin_convertvector(FLOATS_LOAD(x[0] + k), lanes4),
+					 s = __builtin_convertvector(FLOATS_LOAD(x[1] + k), lanes4),
+					 t = __builtin_convertvector(FLOATS_LOAD(x[2] + k), lanes4);
 		const lanes4 w = one / (one + (r * r + s * s + t * t)), wr = w * r, ws = w * s;
 		a += wr * r;
 		b += wr * s;
@@ -89,8 +90,9 @@ static void KERNEL(spectral_moments)(const float *const x[3], size_t n, double s
  * n cells of one channel. The limits are those of the numbers as integers, which is the same for positive ones and takes half the
  * instructions; negative ones become 0. No field is NaN: fields are sums of finite coefficients within 2^64 each.
  */
-static inline __attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
-                                                                         const float rotation[3], float most, float *restrict out)
+static inline
+	__attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
+                                                               const float rotation[3], float most, float *restrict out)
 {
 	const float *a = field[0] + at, *b = field[1] + at, *d = field[2] + at;
 	const int32_t limit = (int32_t)bits_of_float(most);
@@ -104,7 +106,7 @@ static inline __attribute__((always_inline)) void KERNEL(channel_values)(const f
 }
 
 static void KERNEL(spectral_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-                                   const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride)
+                                    const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride)
 {
 	enum { BLOCK = 16 };
 
@@ -156,7 +158,7 @@ static inline __attribute__((always_inline)) void KERNEL(codes_interleave)(const
 }
 
 static void KERNEL(spectral_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-                                  const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride)
+                                   const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride)
 {
 	enum { BLOCK = 16 };
 	const float weight[3][3] = {{rotation[0][0], rotation[1][0], rotation[2][0]},
@@ -206,7 +208,8 @@ static void KERNEL(spectral_rotate)(float *const x[3], size_t n, const float m[3
 	}
 }
 
-static void KERNEL(spectral_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after)
+static void KERNEL(spectral_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before,
+                                    float after)
 {
 	typedef KERNEL(floats8) vector;
 	const float *a = neighbour[0], *b = neighbour[1], *c = neighbour[2], *d = neighbour[3];
@@ -216,14 +219,16 @@ static void KERNEL(spectral_smooth)(float *x, const float *filled, const float *
 		/* What is left of the next vector is read before this one is written. */
 		vector here = FLOATS8_OF(x), left = __builtin_shufflevector((vector){before}, here, 0, 8, 9, 10, 11, 12, 13, 14);
 		for (size_t k = 0; k < whole; k += 8) {
-			const vector right = k + 8 < n ? FLOATS8_OF(x + k + 1) : __builtin_shufflevector(here, (vector){after}, 1, 2, 3, 4, 5, 6, 7, 8);
+			const vector right =
+				k + 8 < n ? FLOATS8_OF(x + k + 1) : __builtin_shufflevector(here, (vector){after}, 1, 2, 3, 4, 5, 6, 7, 8);
 			vector next = here, next_left = left;
 			if (k + 8 < whole) {
 				next = FLOATS8_OF(x + k + 8);
 				next_left = FLOATS8_OF(x + k + 7);
 			}
 			before = x[k + 7];
-			const vector sum = 4 * (left + right) + ((FLOATS8_OF(a + k) + FLOATS8_OF(b + k)) + (FLOATS8_OF(c + k) + FLOATS8_OF(d + k)));
+			const vector sum =
+				4 * (left + right) + ((FLOATS8_OF(a + k) + FLOATS8_OF(b + k)) + (FLOATS8_OF(c + k) + FLOATS8_OF(d + k)));
 			FLOATS8_AT(x + k) = here + FLOATS8_OF(filled + k) * (sum * (1.0f / 12) - here);
 			here = next;
 			left = next_left;
@@ -236,13 +241,15 @@ static void KERNEL(spectral_smooth)(float *x, const float *filled, const float *
 	}
 }
 
-static void KERNEL(spectral_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold, size_t n)
+static void KERNEL(spectral_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold,
+                                    size_t n)
 {
 	const float *a = square[0], *b = square[1], *c = square[2];
 
 	for (size_t q = 0; q < n; q++) {
 		const float *u = a + q, *v = b + q, *w = c + q;
-		const float left = u[0] + v[0] + w[0], here = u[stride] + v[stride] + w[stride], right = u[2 * stride] + v[2 * stride] + w[2 * stride];
+		const float left = u[0] + v[0] + w[0], here = u[stride] + v[stride] + w[stride],
+					right = u[2 * stride] + v[2 * stride] + w[2 * stride];
 		const float energy = left + here + right + 0.5f * (v[stride - 1] + v[stride + 1]);
 		float keep = 1 - threshold * factor[q] / (energy + 1e-30f);
 		x[q] *= keep > 0 ? keep : 0;

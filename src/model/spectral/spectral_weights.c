@@ -31,7 +31,8 @@ void spectral_weights_factors(struct lattice_dims d, const uint8_t weights[SPECT
 			const uint32_t row = y < EDGE - 1 ? (uint32_t)y : EDGE - 2, column = x < EDGE - 1 ? (uint32_t)x : EDGE - 2;
 			const float down = y - (float)row, right = x - (float)column;
 			const uint8_t *w = weights + row * EDGE + column;
-			const float above = (float)w[0] + right * (float)(w[1] - w[0]), below = (float)w[EDGE] + right * (float)(w[EDGE + 1] - w[EDGE]);
+			const float above = (float)w[0] + right * (float)(w[1] - w[0]),
+						below = (float)w[EDGE] + right * (float)(w[EDGE + 1] - w[EDGE]);
 			*factor++ = fast_exp2f((above + down * (below - above)) / 16);
 		}
 }

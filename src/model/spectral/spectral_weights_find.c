@@ -21,7 +21,8 @@ enum { LIGHT_COUNT = sizeof LIGHTS / sizeof *LIGHTS };
 
 /* Cosines and sines of the cells' centres. */
 struct centres {
-	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX], cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX], cos_p[LATTICE_EXTENT_MAX];
+	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX], cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX],
+		cos_p[LATTICE_EXTENT_MAX];
 };
 
 static void centres_fill(struct lattice_dims d, struct centres *out)
@@ -48,8 +49,8 @@ struct region {
 struct survey {
 	const struct lattice *lattice;
 	const struct centres *centres;
-	double factor;     /* of values */
-	double *bins;      /* first pass: shares of directions by log2 of value times cosine, BINS from 2^-64 on */
+	double factor;          /* of values */
+	double *bins;           /* first pass: shares of directions by log2 of value times cosine, BINS from 2^-64 on */
 	struct region *regions; /* second pass: values are in units of white */
 };
 
@@ -87,7 +88,9 @@ static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 		if (!lattice->valid[row + k] || a - b <= 0)
 			continue;
 		const double cosine[2] = {a - b, a + b};
-		const double value = (lattice->rgb[0][row + k] * s->factor + lattice->rgb[1][row + k] * s->factor + lattice->rgb[2][row + k] * s->factor) / 3;
+		const double value =
+			(lattice->rgb[0][row + k] * s->factor + lattice->rgb[1][row + k] * s->factor + lattice->rgb[2][row + k] * s->factor) /
+			3;
 		for (int n = 0; n < 2; n++) {
 			if (region) {
 				region->picture += directions * worth(value, cosine[n], cosine[1 - n]);

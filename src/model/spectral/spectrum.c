@@ -33,7 +33,8 @@ bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_er
 	t->dims = dims;
 	t->levels = spectrum_levels(dims.theta_h, dims.theta_d);
 	t->scratch = malloc(12 * longest * sizeof(float));
-	bp_status status = t->scratch ? cosines_create(dims.phi_d, &t->cosines, error) : error_memory(error, 12 * longest * sizeof(float));
+	bp_status status =
+		t->scratch ? cosines_create(dims.phi_d, &t->cosines, error) : error_memory(error, 12 * longest * sizeof(float));
 	if (status)
 		spectrum_free(t);
 	else

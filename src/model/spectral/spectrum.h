@@ -31,10 +31,7 @@ void spectrum_free(struct spectrum *spectrum); /* NULL is allowed */
 uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d);
 
 /* Coefficients of an axis of n cells that step l of the wavelet works on: halved l times, rounding up. */
-static inline uint32_t spectrum_extent(uint32_t n, uint32_t l)
-{
-	return (n + (1u << l) - 1) >> l;
-}
+static inline uint32_t spectrum_extent(uint32_t n, uint32_t l) { return (n + (1u << l) - 1) >> l; }
 
 static inline uint32_t spectrum_lane(uint32_t phi_d, uint32_t harmonic)
 {

@@ -64,7 +64,8 @@ static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(flo
 {
 	typedef KERNEL(floats8) vector;
 	const size_t low = (n + 1) / 2, high = n / 2;
-	vector even = FLOATS8_OF(x), odd_a = {0}, even_b = {0}, odd_c = {0}; /* the last place after no step, the first, the second, the third */
+	vector even = FLOATS8_OF(x), odd_a = {0}, even_b = {0},
+		   odd_c = {0}; /* the last place after no step, the first, the second, the third */
 
 	for (size_t i = 0; i < low; i++) {
 		const float *here = x + 2 * i * stride;

@@ -20,7 +20,8 @@ static uint32_t step_place(uint32_t i, uint32_t here, float *gain)
 static void places_fill(struct spectrum_inverse *t)
 {
 	const struct lattice_dims d = t->dims;
-	const double coarser = (double)(1 / SPECTRUM_GAIN) * (double)(1 / SPECTRUM_GAIN); /* what every later step does along both axes */
+	const double coarser =
+		(double)(1 / SPECTRUM_GAIN) * (double)(1 / SPECTRUM_GAIN); /* what every later step does along both axes */
 
 	for (uint32_t i = 0; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
@@ -73,7 +74,8 @@ void spectrum_inverse_free(struct spectrum_inverse *t)
 	free(t);
 }
 
-void spectrum_inverse_cosines(const struct spectrum_inverse *t, uint32_t m, uint32_t first, uint32_t every, uint32_t count, float *out)
+void spectrum_inverse_cosines(const struct spectrum_inverse *t, uint32_t m, uint32_t first, uint32_t every, uint32_t count,
+                              float *out)
 {
 	const uint32_t period = 4 * t->dims.phi_d, step = 2 * m * every % period;
 	uint32_t a = (uint32_t)((uint64_t)m * (2 * first + 1) % period);
@@ -90,8 +92,8 @@ void spectrum_inverse_cosines(const struct spectrum_inverse *t, uint32_t m, uint
 	}
 }
 
-void spectrum_inverse_block(const struct spectrum_inverse *t, const struct spectrum_term *terms, const uint32_t *start, uint32_t first,
-                            float *plane)
+void spectrum_inverse_block(const struct spectrum_inverse *t, const struct spectrum_term *terms, const uint32_t *start,
+                            uint32_t first, float *plane)
 {
 	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const struct lattice_dims d = t->dims;

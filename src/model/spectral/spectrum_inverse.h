@@ -28,7 +28,7 @@ struct spectrum_inverse {
 	uint32_t levels;
 	uint32_t *place; /* of the spectrum's row theta_h * D + theta_d */
 	float *gain;
-	float *cosine;   /* sqrt(2 / P) cos(pi a / 2 P), a = 0..4 P - 1 */
+	float *cosine; /* sqrt(2 / P) cos(pi a / 2 P), a = 0..4 P - 1 */
 };
 
 bp_status spectrum_inverse_create(struct lattice_dims dims, struct spectrum_inverse **out, bp_error *error);
@@ -44,14 +44,14 @@ static inline struct spectrum_term spectrum_term_make(const struct spectrum_inve
  * out[n] = s_m cos(pi m (k + 1/2) / P) of spectrum.h, for the `count` cells k = first, first + every, ...; the formula goes on
  * past the last cell.
  */
-void spectrum_inverse_cosines(const struct spectrum_inverse *inverse, uint32_t harmonic, uint32_t first, uint32_t every, uint32_t count,
-                              float *out);
+void spectrum_inverse_cosines(const struct spectrum_inverse *inverse, uint32_t harmonic, uint32_t first, uint32_t every,
+                              uint32_t count, float *out);
 
 /*
  * The cells first..first + SPECTRUM_BLOCK - 1 of all rows of phi_d, from the terms start[m]..start[m + 1] - 1 of every harmonic m.
  * The plane is aligned to a vector of 32 bytes; what lies past the last cell means nothing.
  */
-void spectrum_inverse_block(const struct spectrum_inverse *inverse, const struct spectrum_term *terms, const uint32_t *start, uint32_t first,
-                            float *plane);
+void spectrum_inverse_block(const struct spectrum_inverse *inverse, const struct spectrum_term *terms, const uint32_t *start,
+                            uint32_t first, float *plane);
 
 #endif

@@ -54,7 +54,8 @@ static void shares_fill(struct table *t, uint32_t blocks, const float *const kno
 	const size_t rows = (size_t)t->dims.theta_h * t->dims.theta_d;
 	/* Below this a range is nothing, and its reciprocal might be infinite. */
 	const float least = 0x1p-100f;
-	const float per[2] = {high[0] - low[0] > least ? 4095 / (high[0] - low[0]) : 0, high[1] - low[1] > least ? 4095 / (high[1] - low[1]) : 0};
+	const float per[2] = {high[0] - low[0] > least ? 4095 / (high[0] - low[0]) : 0,
+	                      high[1] - low[1] > least ? 4095 / (high[1] - low[1]) : 0};
 	const float *knot[2] = {knots[0], knots[1]};
 
 	for (size_t r = 0; r < rows; r++) {
@@ -100,7 +101,12 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	places_fill(t);
 
 	struct compact_rows_plan plan = {
-		.period = period, .padded = padded, .blocks = blocks, .width = t->width, .block_bytes = t->block_bytes, .channels = t->channels,
+		.period = period,
+		.padded = padded,
+		.blocks = blocks,
+		.width = t->width,
+		.block_bytes = t->block_bytes,
+		.channels = t->channels,
 		.third = table_factor(largest) / 3,
 		.dark = dark_of(largest * e->unit),
 		.row = {scratch, {scratch + line, scratch + 2 * line}, scratch + 3 * line},

@@ -15,7 +15,8 @@ static inline struct compact_view KERNEL(compact_look)(const struct table *t, co
 {
 	const struct table_place *place = &t->places[cell->k];
 	const struct table_pair *rows = &t->rows[cell->j], *slices = &t->slices[cell->i];
-	const uint8_t *const first = t->store + rows->offset + place->offset, *const a = first + slices->offset, *const c = a + slices->step;
+	const uint8_t *const first = t->store + rows->offset + place->offset, *const a = first + slices->offset,
+						 *const c = a + slices->step;
 	f32x4 at = cell->beyond;
 	at[3] = place->place + cell->beyond[2] * t->half_reciprocal;
 	return (struct compact_view){a, a + rows->step, c, c + rows->step, place->residual, place->share, cell->h, at};
@@ -73,8 +74,10 @@ static inline void KERNEL(compact_residuals)(const struct compact_view *v, f32x8
 	far = _mm_insert_epi16(far, (int16_t)KERNEL(load16)(v->d + at), 1);
 	*out = (f32x8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_unpacklo_epi32(near, far)));
 #else
-	const u32x4 pairs = {KERNEL(load16)(v->a + at), KERNEL(load16)(v->b + at), KERNEL(load16)(v->c + at), KERNEL(load16)(v->d + at)};
-	const f32x4 here = __builtin_convertvector((i32x4)(pairs & 0xff), f32x4), next = __builtin_convertvector((i32x4)(pairs >> 8), f32x4);
+	const u32x4 pairs = {KERNEL(load16)(v->a + at), KERNEL(load16)(v->b + at), KERNEL(load16)(v->c + at),
+	                     KERNEL(load16)(v->d + at)};
+	const f32x4 here = __builtin_convertvector((i32x4)(pairs & 0xff), f32x4),
+				next = __builtin_convertvector((i32x4)(pairs >> 8), f32x4);
 	*out = __builtin_shufflevector(here, next, 0, 4, 1, 5, 2, 6, 3, 7);
 #endif
 }
@@ -83,7 +86,8 @@ static inline void KERNEL(compact_residuals)(const struct compact_view *v, f32x8
 static inline void KERNEL(compact_codes)(const struct compact_view *v, f32x8 *red, f32x8 *blue)
 {
 	const uint32_t at = v->share - 2;
-	const uint64_t i = KERNEL(load64)(v->a + at), j = KERNEL(load64)(v->b + at), k = KERNEL(load64)(v->c + at), l = KERNEL(load64)(v->d + at);
+	const uint64_t i = KERNEL(load64)(v->a + at), j = KERNEL(load64)(v->b + at), k = KERNEL(load64)(v->c + at),
+				   l = KERNEL(load64)(v->d + at);
 #ifdef __AVX2__
 	const __m256i spread = _mm256_setr_epi8(-1, 2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15, /* in each half */
 	                                        -1, 2, 3, 4, -1, 5, 6, 7, -1, 10, 11, 12, -1, 13, 14, 15);
@@ -205,7 +209,8 @@ struct compact_gathered {
 	uint32_t from[4][BLOCK], to[4][BLOCK];       /* the codes in the high 24 bits */
 };
 
-static inline void KERNEL(compact_gather)(const struct table *t, const struct lookups *l, const struct lookups *next, struct compact_gathered *out)
+static inline void KERNEL(compact_gather)(const struct table *t, const struct lookups *l, const struct lookups *next,
+                                          struct compact_gathered *out)
 {
 	for (size_t m = 0; m < l->count; m++) {
 		KERNEL(fetch)(t, next, m, 1);
@@ -247,22 +252,28 @@ static inline struct compact_row_value KERNEL(compact_row_value)(uint32_t head, 
 }
 
 /* compact_rgb for many, in the same order of operations. */
-static inline void KERNEL(compact_rgb_values)(const struct table *t, const struct lookups *l, const struct lookups *next, float *restrict red,
-                                              float *restrict green, float *restrict blue)
+static inline void KERNEL(compact_rgb_values)(const struct table *t, const struct lookups *l, const struct lookups *next,
+                                              float *restrict red, float *restrict green, float *restrict blue)
 {
-	const float mix[3][3] = {{t->mix[0][0], t->mix[0][1], t->mix[0][2]}, {t->mix[1][0], t->mix[1][1], t->mix[1][2]},
+	const float mix[3][3] = {{t->mix[0][0], t->mix[0][1], t->mix[0][2]},
+	                         {t->mix[1][0], t->mix[1][1], t->mix[1][2]},
 	                         {t->mix[2][0], t->mix[2][1], t->mix[2][2]}};
 	struct compact_gathered in;
 	KERNEL(compact_gather)(t, l, next, &in);
 	for (size_t m = 0, n = l->count; m < n; m++) {
 		float h1 = l->h[m], h0 = 1 - h1, d1 = l->d[m], d0 = 1 - d1, p1 = l->p[m], p0 = 1 - p1, place = l->place[m];
 		struct compact_row_value a, b, c, d;
-		a = KERNEL(compact_row_value)(in.head[0][m], in.residual[0][m], in.from[0][m], in.to[0][m], d0 * p0 * h0, d0 * p1 * h0, place);
-		b = KERNEL(compact_row_value)(in.head[1][m], in.residual[1][m], in.from[1][m], in.to[1][m], d1 * p0 * h0, d1 * p1 * h0, place);
-		c = KERNEL(compact_row_value)(in.head[2][m], in.residual[2][m], in.from[2][m], in.to[2][m], d0 * p0 * h1, d0 * p1 * h1, place);
-		d = KERNEL(compact_row_value)(in.head[3][m], in.residual[3][m], in.from[3][m], in.to[3][m], d1 * p0 * h1, d1 * p1 * h1, place);
+		a = KERNEL(compact_row_value)(in.head[0][m], in.residual[0][m], in.from[0][m], in.to[0][m], d0 * p0 * h0, d0 * p1 * h0,
+		                              place);
+		b = KERNEL(compact_row_value)(in.head[1][m], in.residual[1][m], in.from[1][m], in.to[1][m], d1 * p0 * h0, d1 * p1 * h0,
+		                              place);
+		c = KERNEL(compact_row_value)(in.head[2][m], in.residual[2][m], in.from[2][m], in.to[2][m], d0 * p0 * h1, d0 * p1 * h1,
+		                              place);
+		d = KERNEL(compact_row_value)(in.head[3][m], in.residual[3][m], in.from[3][m], in.to[3][m], d1 * p0 * h1, d1 * p1 * h1,
+		                              place);
 		float r = ((a.red_from + c.red_from) + (b.red_from + d.red_from)) + ((a.red_to + c.red_to) + (b.red_to + d.red_to));
-		float u = ((a.blue_from + c.blue_from) + (b.blue_from + d.blue_from)) + ((a.blue_to + c.blue_to) + (b.blue_to + d.blue_to));
+		float u =
+			((a.blue_from + c.blue_from) + (b.blue_from + d.blue_from)) + ((a.blue_to + c.blue_to) + (b.blue_to + d.blue_to));
 		float g = ((a.here + c.here) + (b.here + d.here)) + ((a.next + c.next) + (b.next + d.next));
 		float value[3];
 		for (int k = 0; k < 3; k++) {
@@ -275,8 +286,8 @@ static inline void KERNEL(compact_rgb_values)(const struct table *t, const struc
 	}
 }
 
-static const struct KERNEL(form) KERNEL(compact_rgb_form) = {
-	KERNEL(compact_rgb_one), KERNEL(compact_find_many), NULL, KERNEL(compact_rgb_values), 1, true};
+static const struct KERNEL(form)
+	KERNEL(compact_rgb_form) = {KERNEL(compact_rgb_one), KERNEL(compact_find_many), NULL, KERNEL(compact_rgb_values), 1, true};
 static const struct KERNEL(form) KERNEL(compact_mono_form) = {
 	KERNEL(compact_mono_one), KERNEL(compact_find_many), KERNEL(compact_mono_of_many), NULL, 1, true};
 FORM_ENTRIES(compact_rgb_form)

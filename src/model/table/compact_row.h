@@ -34,8 +34,8 @@ struct compact_rows_plan {
 	struct compact_hats hats;
 	uint32_t period, padded, blocks, width, block_bytes;
 	int channels;
-	float third; /* brings the sum of the channels to a mean in [0, 1] */
-	float dark;  /* shares of cells well below it count little */
+	float third;            /* brings the sum of the channels to a mean in [0, 1] */
+	float dark;             /* shares of cells well below it count little */
 	struct compact_row row; /* scratch */
 };
 
@@ -43,7 +43,8 @@ struct compact_rows_plan {
  * A row of values in the compact form, its first block at `block`, but for the shares' codes: three of R and three of B for every block
  * go to knots, as they are. For any processor, and for those with AVX2 (math/kernels.h): the same bits.
  */
-typedef void compact_row_fn(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block, float *const knots[2]);
+typedef void compact_row_fn(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block,
+                            float *const knots[2]);
 compact_row_fn compact_row_plain, compact_row_avx2;
 
 /* m: the five different elements of a system of hat functions; x: its right-hand side, then its solution. */

@@ -9,14 +9,11 @@ static inline f32x4 KERNEL(load4)(const float *p)
 	return v;
 }
 
-static inline float KERNEL(sum4)(f32x4 v)
-{
-	return (v[0] + v[1]) + (v[2] + v[3]);
-}
+static inline float KERNEL(sum4)(f32x4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
 /* The codes of both shares; a cell's errors count 1e-6 to 1: little where it is dark. */
-static void KERNEL(compact_fit_weighted)(const struct compact_hats *hats, const float *const share[2], const float *mean, float dark,
-                                         float *const codes[2])
+static void KERNEL(compact_fit_weighted)(const struct compact_hats *hats, const float *const share[2], const float *mean,
+                                         float dark, float *const codes[2])
 {
 	f32x4 system[5] = {{0}}, right[2][3] = {{{0}}};
 	float m[5];
@@ -55,7 +52,8 @@ static inline void KERNEL(compact_range)(const float *x, uint32_t count, float *
 }
 
 /* The three codes of a block's shares, within the range of the shares themselves. */
-static void KERNEL(compact_fit)(const struct compact_hats *hats, const float *const share[2], const float *mean, float dark, float *const codes[2])
+static void KERNEL(compact_fit)(const struct compact_hats *hats, const float *const share[2], const float *mean, float dark,
+                                float *const codes[2])
 {
 	const float STEEP = 0.02f; /* from this range within a block on, dark cells may mislead the plain fit */
 	float low[2], high[2];
@@ -83,8 +81,9 @@ static void KERNEL(compact_fit)(const struct compact_hats *hats, const float *co
 }
 
 /* Not inline: there gcc forgets that nothing overlaps, and does not vectorise. */
-__attribute__((noinline)) static void KERNEL(compact_means)(const float *restrict red, const float *restrict green, const float *restrict blue,
-                                                            uint32_t width, float third, float *restrict root, float *restrict r_share,
+__attribute__((noinline)) static void KERNEL(compact_means)(const float *restrict red, const float *restrict green,
+                                                            const float *restrict blue, uint32_t width, float third,
+                                                            float *restrict root, float *restrict r_share,
                                                             float *restrict b_share, float *restrict means)
 {
 	for (uint32_t k = 0; k < width; k++) {
@@ -120,7 +119,8 @@ static void KERNEL(compact_roots)(const float *root, uint32_t count, uint8_t *bl
 	/* the base rounded down, the step up: their range holds every value */
 	uint16_t base = (uint16_t)(bits_of_float(low) >> COMPACT_HEAD_SHIFT);
 	float from = float_of_bits((uint32_t)base << COMPACT_HEAD_SHIFT);
-	uint16_t step = (uint16_t)((bits_of_float((high - from) * (1.0f / 255)) + (1u << COMPACT_HEAD_SHIFT) - 1) >> COMPACT_HEAD_SHIFT);
+	uint16_t step =
+		(uint16_t)((bits_of_float((high - from) * (1.0f / 255)) + (1u << COMPACT_HEAD_SHIFT) - 1) >> COMPACT_HEAD_SHIFT);
 	float width = float_of_bits((uint32_t)step << COMPACT_HEAD_SHIFT), per = width > 0x1p-120f ? 1 / width : 0;
 	memcpy(block, &base, sizeof base);
 	memcpy(block + 2, &step, sizeof step);
@@ -131,8 +131,10 @@ static void KERNEL(compact_roots)(const float *root, uint32_t count, uint8_t *bl
 		code[k] = __builtin_convertvector(min_x4(max_x4(near, (f32x4){0, 0, 0, 0}), (f32x4){255, 255, 255, 255}), i32x4);
 	}
 #ifdef __SSE2__ /* gcc 12 makes four times as many instructions of it */
-	const __m128i low4 = _mm_packs_epi32((__m128i)code[0], (__m128i)code[1]), next4 = _mm_packs_epi32((__m128i)code[2], (__m128i)code[3]);
-	const __m128i first = _mm_packus_epi16(low4, next4), rest = _mm_packus_epi16(_mm_packs_epi32((__m128i)code[4], (__m128i)code[4]), next4);
+	const __m128i low4 = _mm_packs_epi32((__m128i)code[0], (__m128i)code[1]),
+				  next4 = _mm_packs_epi32((__m128i)code[2], (__m128i)code[3]);
+	const __m128i first = _mm_packus_epi16(low4, next4),
+				  rest = _mm_packus_epi16(_mm_packs_epi32((__m128i)code[4], (__m128i)code[4]), next4);
 	memcpy(block + COMPACT_RESIDUALS, &first, 16);
 	memcpy(block + COMPACT_RESIDUALS + 16, &rest, 4);
 #else
@@ -140,7 +142,8 @@ static void KERNEL(compact_roots)(const float *root, uint32_t count, uint8_t *bl
 		block[COMPACT_RESIDUALS + k] = (uint8_t)code[k / 4][k % 4];
 #endif
 }
-_Static_assert(CELLS_MAX == 20 && COMPACT_RESIDUALS + CELLS_MAX <= COMPACT_BLOCK_MONO, "a block has room for all that is written");
+_Static_assert(CELLS_MAX == 20 && COMPACT_RESIDUALS + CELLS_MAX <= COMPACT_BLOCK_MONO,
+               "a block has room for all that is written");
 
 void KERNEL(compact_row)(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block, float *const knots[2])
 {

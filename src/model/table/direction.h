@@ -178,7 +178,8 @@ static inline bool direction_locate_squared(f32x4 scale, const float wi[3], cons
 		const f32x4 ii = i * i, oo = o * o, ss = s * s, dd = d * d;
 		const f32x4 io = __builtin_shufflevector(ii, oo, 0, 4, 1, 5), sd = __builtin_shufflevector(ss, dd, 0, 4, 1, 5);
 		flat = __builtin_shufflevector(io, sd, 0, 1, 4, 5) + __builtin_shufflevector(io, sd, 2, 3, 6, 7);
-		up = __builtin_shufflevector(__builtin_shufflevector(ii, oo, 2, 6, 3, 7), __builtin_shufflevector(ss, dd, 2, 6, 3, 7), 0, 1, 4, 5);
+		up = __builtin_shufflevector(__builtin_shufflevector(ii, oo, 2, 6, 3, 7), __builtin_shufflevector(ss, dd, 2, 6, 3, 7), 0,
+		                             1, 4, 5);
 		length = flat + up;
 		/* |i|^2 and |o|^2 nearly 1, 0 below i.z and o.z */
 		const f32x4 off = (f32x4)((i32x4)(length - one) & (i32x4){0x7fffffff, 0x7fffffff, 0, 0});
@@ -190,7 +191,8 @@ static inline bool direction_locate_squared(f32x4 scale, const float wi[3], cons
 		o *= direction_normaliser(length[1]);
 	}
 	/* the arguments of the arctangents; the last lane is of no use */
-	const f32x4 cross = s * __builtin_shufflevector(d, d, 1, 0, 2, 3), y = cross - __builtin_shufflevector(cross, cross, 1, 1, 1, 1);
+	const f32x4 cross = s * __builtin_shufflevector(d, d, 1, 0, 2, 3),
+				y = cross - __builtin_shufflevector(cross, cross, 1, 1, 1, 1);
 	const f32x4 flat_length = __builtin_shufflevector(flat, length, 2, 6, 3, 7);
 	f32x4 factor = {1, 1, 1, 1}, top = __builtin_shufflevector(flat_length, y * y, 0, 3, 4, 4);
 	factor[2] = length[2];

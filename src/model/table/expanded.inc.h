@@ -65,7 +65,8 @@ static inline void KERNEL(expanded_rgb)(const struct table *t, const struct look
 
 static inline void KERNEL(expanded_mono)(const struct table *t, const struct lookup *l, float rgb[3])
 {
-	const uint16_t *a = (const uint16_t *)(const void *)t->store + l->offset, *b = a + l->step_d, *c = a + l->step_h, *d = b + l->step_h;
+	const uint16_t *a = (const uint16_t *)(const void *)t->store + l->offset, *b = a + l->step_d, *c = a + l->step_h,
+				   *d = b + l->step_h;
 	float h1 = l->h * DECODE_SCALE, h0 = DECODE_SCALE - h1, d1 = l->d, d0 = 1 - d1, p1 = l->p * t->unit, p0 = t->unit - p1;
 	u16x4 low = {a[0], a[1], b[0], b[1]}, high = {c[0], c[1], d[0], d[1]};
 	f32x4 weight = {d0, d0, d1, d1};

@@ -73,9 +73,10 @@ struct components {
 
 /* The points of n usable pairs; where `unit`, they are unit vectors already. */
 __attribute__((always_inline)) static inline void KERNEL(points)(const struct table *t, size_t n, bool unit, struct components i,
-                                                                struct components o, struct lookups *restrict to)
+                                                                 struct components o, struct lookups *restrict to)
 {
-	const float *restrict ix = i.x, *restrict iy = i.y, *restrict iz = i.z, *restrict ox = o.x, *restrict oy = o.y, *restrict oz = o.z;
+	const float *restrict ix = i.x, *restrict iy = i.y, *restrict iz = i.z, *restrict ox = o.x, *restrict oy = o.y,
+						  *restrict oz = o.z;
 	const float scale[3] = {t->scale[0], t->scale[1], t->scale[2]};
 	for (size_t m = 0; m < n; m++) {
 		float ni = unit ? 1 : direction_normaliser(ix[m] * ix[m] + iy[m] * iy[m] + iz[m] * iz[m]);
@@ -91,7 +92,7 @@ __attribute__((always_inline)) static inline void KERNEL(points)(const struct ta
 
 /* Points of the pairs from `first` on, at most BLOCK. The point of an unusable pair is 0, 0, 0. */
 static void KERNEL(locate)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], size_t first,
-                             struct lookups *restrict to)
+                           struct lookups *restrict to)
 {
 	const struct components i = {wi[0] + first, wi[1] + first, wi[2] + first}, o = {wo[0] + first, wo[1] + first, wo[2] + first};
 	size_t n = count - first < BLOCK ? count - first : BLOCK;
@@ -141,7 +142,8 @@ static inline struct cell KERNEL(cell_of)(struct lattice_dims dims, float shift,
  * Look-up m of the block after this one, if there is: its four rows are on the way while others are evaluated.
  * Always inline: gcc takes a function that only prefetches for one without effects, and drops calls of it.
  */
-__attribute__((always_inline)) static inline void KERNEL(fetch)(const struct table *t, const struct lookups *next, size_t m, size_t unit)
+__attribute__((always_inline)) static inline void KERNEL(fetch)(const struct table *t, const struct lookups *next, size_t m,
+                                                                size_t unit)
 {
 	if (m >= next->count)
 		return;
@@ -156,12 +158,12 @@ __attribute__((always_inline)) static inline void KERNEL(fetch)(const struct tab
 /* What one memory form and number of channels is made of. Constant where it is used, so that the calls below become direct and inline. */
 struct KERNEL(form) {
 	void (*one)(const struct table *t, const struct cell_x4 *at, float rgb[3]);
-	struct lookup (*find)(const struct table *t, struct cell cell);                           /* for a loop that vectorises */
-	void (*value)(const struct table *t, const struct lookup *l, float rgb[3]);               /* of one of many, to the same bits as `one` */
-	void (*values)(const struct table *t, const struct lookups *l, const struct lookups *next, float *restrict r, float *restrict g,
-	               float *restrict b);                                                        /* in place of `value`, where not NULL */
-	size_t unit;                                                                              /* bytes to which offsets count */
-	bool compact;                                                                             /* residual, share and place are in use */
+	struct lookup (*find)(const struct table *t, struct cell cell);             /* for a loop that vectorises */
+	void (*value)(const struct table *t, const struct lookup *l, float rgb[3]); /* of one of many, to the same bits as `one` */
+	void (*values)(const struct table *t, const struct lookups *l, const struct lookups *next, float *restrict r,
+	               float *restrict g, float *restrict b); /* in place of `value`, where not NULL */
+	size_t unit;                                          /* bytes to which offsets count */
+	bool compact;                                         /* residual, share and place are in use */
 };
 
 #define FORM_FUNCTION static inline __attribute__((always_inline))
@@ -178,8 +180,9 @@ FORM_FUNCTION void KERNEL(form_evaluate)(const struct KERNEL(form) form, bool ne
 	}
 }
 
-FORM_FUNCTION void KERNEL(form_locate)(const struct KERNEL(form) form, const struct table *t, size_t count, const float *const wi[3],
-                                       const float *const wo[3], size_t first, struct lookups *restrict to)
+FORM_FUNCTION void KERNEL(form_locate)(const struct KERNEL(form) form, const struct table *t, size_t count,
+                                       const float *const wi[3], const float *const wo[3], size_t first,
+                                       struct lookups *restrict to)
 {
 	const struct table copy = *t; /* known not to change while *to is written */
 	const float shift = t->shift[0];
@@ -200,12 +203,13 @@ FORM_FUNCTION void KERNEL(form_locate)(const struct KERNEL(form) form, const str
 	}
 }
 
-FORM_FUNCTION void KERNEL(form_values)(const struct KERNEL(form) form, const struct table *t, const struct lookups *l, const struct lookups *next,
-                                       float *restrict r, float *restrict g, float *restrict b)
+FORM_FUNCTION void KERNEL(form_values)(const struct KERNEL(form) form, const struct table *t, const struct lookups *l,
+                                       const struct lookups *next, float *restrict r, float *restrict g, float *restrict b)
 {
 	for (size_t m = 0; m < l->count; m++) {
 		KERNEL(fetch)(t, next, m, form.unit);
-		struct lookup lookup = {.offset = l->offset[m], .step_h = l->step_h[m], .step_d = l->step_d[m], .h = l->h[m], .d = l->d[m], .p = l->p[m]};
+		struct lookup lookup = {
+			.offset = l->offset[m], .step_h = l->step_h[m], .step_d = l->step_d[m], .h = l->h[m], .d = l->d[m], .p = l->p[m]};
 		if (form.compact)
 			lookup.residual = l->residual[m];
 		float value[3];
@@ -216,8 +220,8 @@ FORM_FUNCTION void KERNEL(form_values)(const struct KERNEL(form) form, const str
 	}
 }
 
-FORM_FUNCTION void KERNEL(form_batch)(const struct KERNEL(form) form, const struct table *t, size_t count, const float *const wi[3],
-                                      const float *const wo[3], float *const rgb[3])
+FORM_FUNCTION void KERNEL(form_batch)(const struct KERNEL(form) form, const struct table *t, size_t count,
+                                      const float *const wi[3], const float *const wo[3], float *const rgb[3])
 {
 	struct lookups both[2];
 	struct lookups *now = &both[0], *next = &both[1];
@@ -241,16 +245,17 @@ FORM_FUNCTION void KERNEL(form_batch)(const struct KERNEL(form) form, const stru
 }
 
 /* The three entries of a form for struct table_kernels: name_evaluate, name_nearest, name_batch. */
-#define FORM_ENTRIES(name)                                                                                                                  \
-	static void KERNEL(name##_evaluate)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])                          \
-	{                                                                                                                                       \
-		KERNEL(form_evaluate)(KERNEL(name), false, t, wi, wo, rgb);                                                                         \
-	}                                                                                                                                       \
-	static void KERNEL(name##_nearest)(const struct table *t, const float wi[3], const float wo[3], float rgb[3])                           \
-	{                                                                                                                                       \
-		KERNEL(form_evaluate)(KERNEL(name), true, t, wi, wo, rgb);                                                                          \
-	}                                                                                                                                       \
-	static void KERNEL(name##_batch)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]) \
-	{                                                                                                                                       \
-		KERNEL(form_batch)(KERNEL(name), t, count, wi, wo, rgb);                                                                            \
+#define FORM_ENTRIES(name) \
+	static void KERNEL(name##_evaluate)(const struct table *t, const float wi[3], const float wo[3], float rgb[3]) \
+	{ \
+		KERNEL(form_evaluate)(KERNEL(name), false, t, wi, wo, rgb); \
+	} \
+	static void KERNEL(name##_nearest)(const struct table *t, const float wi[3], const float wo[3], float rgb[3]) \
+	{ \
+		KERNEL(form_evaluate)(KERNEL(name), true, t, wi, wo, rgb); \
+	} \
+	static void KERNEL(name##_batch)(const struct table *t, size_t count, const float *const wi[3], const float *const wo[3], \
+	                                 float *const rgb[3]) \
+	{ \
+		KERNEL(form_batch)(KERNEL(name), t, count, wi, wo, rgb); \
 	}

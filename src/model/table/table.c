@@ -9,10 +9,7 @@
 #include "model/math/kernels.h"
 
 /* A table's unit: what is beyond a float's range is cut. */
-static float table_unit(double unit)
-{
-	return (float)(unit < TABLE_LARGEST ? unit : TABLE_LARGEST);
-}
+static float table_unit(double unit) { return (float)(unit < TABLE_LARGEST ? unit : TABLE_LARGEST); }
 
 static float largest_value(const struct expansion *e)
 {
@@ -92,7 +89,8 @@ static bp_status expanded_fill(struct table *t, const struct expansion *e, float
 }
 
 /* Without its store. */
-static bp_status table_new(struct lattice_dims dims, bool half, enum table_form form, int channels, struct table **out, bp_error *error)
+static bp_status table_new(struct lattice_dims dims, bool half, enum table_form form, int channels, struct table **out,
+                           bp_error *error)
 {
 	struct table *t = memory_alloc_kept(sizeof *t);
 	if (!t)
@@ -115,11 +113,13 @@ static bp_status table_new(struct lattice_dims dims, bool half, enum table_form 
 }
 
 /* half: the expansion holds every second value of another. */
-static bp_status expansion_build(const struct expansion *expansion, bool half, enum table_form form, int channels, struct table **out,
-                                 bp_error *error)
+static bp_status expansion_build(const struct expansion *expansion, bool half, enum table_form form, int channels,
+                                 struct table **out, bp_error *error)
 {
-	if (!lattice_dims_legal(expansion->dims) || (channels != 1 && channels != 3) || (form != TABLE_EXPANDED && form != TABLE_COMPACT))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no such form of table (form %d, %d channels)", (int)form, channels);
+	if (!lattice_dims_legal(expansion->dims) || (channels != 1 && channels != 3) ||
+	    (form != TABLE_EXPANDED && form != TABLE_COMPACT))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no such form of table (form %d, %d channels)", (int)form,
+		                 channels);
 	struct table *t = NULL;
 	bp_status status = table_new(expansion->dims, half, form, channels, &t, error);
 	if (status)
@@ -142,8 +142,8 @@ bp_status table_build(const struct expansion *expansion, enum table_form form, i
 /* ---- from a model ---- */
 
 /* Straight from the fields: no table of floats in between, which would be twice the size. */
-static bp_status codes_build(const struct model *model, uint32_t layers, struct lattice_dims dims, bool half, int channels, struct table **out,
-                             bp_error *error)
+static bp_status codes_build(const struct model *model, uint32_t layers, struct lattice_dims dims, bool half, int channels,
+                             struct table **out, bp_error *error)
 {
 	struct table *table = NULL;
 	bp_status status = table_new(dims, half, TABLE_EXPANDED, channels, &table, error);
@@ -152,7 +152,8 @@ static bp_status codes_build(const struct model *model, uint32_t layers, struct 
 	table->unit = (float)(model->spectral->unit * SPECTRAL_CODES_UNIT);
 	status = expanded_alloc(table, error);
 	if (!status)
-		status = spectral_expand_codes(model->spectral, layers, half, channels, (uint16_t *)(void *)table->store, table->row, error);
+		status =
+			spectral_expand_codes(model->spectral, layers, half, channels, (uint16_t *)(void *)table->store, table->row, error);
 	if (status) {
 		table_free(table);
 		return status;
@@ -162,15 +163,18 @@ static bp_status codes_build(const struct model *model, uint32_t layers, struct 
 	return BP_OK;
 }
 
-bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error)
+bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out,
+                            bp_error *error)
 {
 	const struct spectral_model *m = model->profile == PROFILE_SPECTRAL ? model->spectral : NULL;
 	struct lattice_dims dims = model->dims;
 	struct expansion expansion;
 
 	if (half && !model_has_half(model->dims, &dims))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the extents %u x %u x %u have no halves", dims.theta_h, dims.theta_d, dims.phi_d);
-	if (m && !m->coefficient[0] && form == TABLE_EXPANDED && (channels == 1 || channels == 3) && m->unit >= 0x1p-60 && m->unit <= 0x1p60)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the extents %u x %u x %u have no halves", dims.theta_h,
+		                 dims.theta_d, dims.phi_d);
+	if (m && !m->coefficient[0] && form == TABLE_EXPANDED && (channels == 1 || channels == 3) && m->unit >= 0x1p-60 &&
+	    m->unit <= 0x1p60)
 		return codes_build(model, model->layer_count, dims, half, channels, out, error);
 	bp_status status = expansion_alloc(dims, &expansion, error);
 	if (status)
@@ -190,10 +194,7 @@ void table_free(struct table *table)
 	memory_free_kept(table);
 }
 
-size_t table_bytes(const struct table *table)
-{
-	return sizeof *table + table->store_bytes;
-}
+size_t table_bytes(const struct table *table) { return sizeof *table + table->store_bytes; }
 
 bool table_layout(const struct table *table, struct table_layout *out)
 {
@@ -225,7 +226,8 @@ void table_nearest(const struct table *table, const float wi[3], const float wo[
 	table->kernels.nearest(table, wi, wo, rgb);
 }
 
-void table_evaluate_batch(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3])
+void table_evaluate_batch(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3],
+                          float *const rgb[3])
 {
 	table->kernels.batch(table, count, wi, wo, rgb);
 }

@@ -36,7 +36,8 @@ bp_status table_build(const struct expansion *expansion, enum table_form form, i
  * The same of all of a model's layers, or, with `half`, of every second value of it (model_expand_half), and quicker: of a decoded
  * spectral profile's expanded form no table of floats is made. BP_ERROR_ARGUMENT where there is no half.
  */
-bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out, bp_error *error);
+bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out,
+                            bp_error *error);
 void table_free(struct table *table); /* NULL is allowed */
 size_t table_bytes(const struct table *table);
 
@@ -45,10 +46,10 @@ struct table_layout {
 	const uint8_t *blocks; /* inside the table */
 	size_t bytes;
 	struct lattice_dims dims;
-	uint32_t row, slice;   /* bytes from one pair of theta_d to the next, from one theta_h to the next */
-	uint32_t width, half;  /* cells of a block; cells between two share codes */
-	float first;           /* where the first value stands, in cells: 1/2, or 1/4 where the table has every second value */
-	float mix[3][3];       /* what brings sums of red codes, of blue codes and of means to R, G, B in 1/sr */
+	uint32_t row, slice;  /* bytes from one pair of theta_d to the next, from one theta_h to the next */
+	uint32_t width, half; /* cells of a block; cells between two share codes */
+	float first;          /* where the first value stands, in cells: 1/2, or 1/4 where the table has every second value */
+	float mix[3][3];      /* what brings sums of red codes, of blue codes and of means to R, G, B in 1/sr */
 };
 /* False for tables of another form. */
 bool table_layout(const struct table *table, struct table_layout *out);
@@ -61,6 +62,7 @@ void table_evaluate(const struct table *table, const float wi[3], const float wo
 /* The value of the cell into which the directions fall (the MERL database's own look-up). */
 void table_nearest(const struct table *table, const float wi[3], const float wo[3], float rgb[3]);
 /* table_evaluate for `count` pairs in separate arrays of components; the same values to the bit. */
-void table_evaluate_batch(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);
+void table_evaluate_batch(const struct table *table, size_t count, const float *const wi[3], const float *const wo[3],
+                          float *const rgb[3]);
 
 #endif

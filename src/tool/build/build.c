@@ -53,9 +53,12 @@ static void missing_report(struct build *build)
 		const struct manifest_entry *entry = &build->manifest.entries[i];
 		if (entry->found || !build_shard_has(build->options, entry->name))
 			continue;
-		error_set(&error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "listed, but not among the inputs%s",
-		          entry->other_form ? "; there is one of the same text in another Unicode form (letters and accents apart, or composed): list it as "
-		                              "its file is called" : "");
+		error_set(
+			&error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "listed, but not among the inputs%s",
+			entry->other_form
+				? "; there is one of the same text in another Unicode form (letters and accents apart, or composed): list it as "
+				  "its file is called"
+				: "");
 		report_unpacked(build->options->manifest, entry->name, &error, build->options->json);
 		build->totals.missing++;
 	}
@@ -116,8 +119,8 @@ static bp_status output_look(const struct build *build, bool found, bp_error *er
 		if (options->manifest && !options->force)
 			status = output_check_input(options->output, options->manifest, error);
 		return status ? status
-		              : output_check_path(options->output, OUTPUT_KIND_ARCHIVE, options->force, (const char *const *)options->inputs,
-		                                  (size_t)options->input_count, error);
+		              : output_check_path(options->output, OUTPUT_KIND_ARCHIVE, options->force,
+		                                  (const char *const *)options->inputs, (size_t)options->input_count, error);
 	}
 	if (options->force || access(options->output, F_OK) != 0)
 		return BP_OK;
@@ -164,7 +167,8 @@ static void build_prepare_and_work(struct build *build)
 	bool streams = build->sources.stream_count > 0;
 	if (!streams)
 		missing_report(build);
-	if ((build->items.count == 0 && !streams && !shard_is_empty(build)) || (build->options->strict && !totals_whole(&build->totals)))
+	if ((build->items.count == 0 && !streams && !shard_is_empty(build)) ||
+	    (build->options->strict && !totals_whole(&build->totals)))
 		return;
 	if (output_look(build, true, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
 		build_stop(build, options->output, NULL, &error);

@@ -17,11 +17,11 @@ struct build_options {
 	struct fit_options fit;
 	unsigned workers;
 	bool strict, json, quiet;
-	bool update;      /* take records of unchanged sources from the archive that stands at `output` */
+	bool update;                 /* take records of unchanged sources from the archive that stands at `output` */
 	unsigned shard, shard_count; /* pack the shard-th (1..shard_count) part of the materials, chosen by their names; 0, 0: all */
-	const char *charset; /* of names in tars and zips that are not UTF-8; NULL: unknown */
-	bool force;       /* replace an output that is an input, or no archive */
-	bool any_lattice; /* accept MERL-like files of any legal extents */
+	const char *charset;         /* of names in tars and zips that are not UTF-8; NULL: unknown */
+	bool force;                  /* replace an output that is an input, or no archive */
+	bool any_lattice;            /* accept MERL-like files of any legal extents */
 };
 
 /* Returns an exit code; everything has been said. */

@@ -83,8 +83,12 @@ static bp_status order_make(struct build *build, bp_error *error)
 
 void build_inputs_collect(struct build *build)
 {
-	const struct source_options options = {
-		.notice = notice_take, .refused = refusal_take, .charset = build->options->charset, .wanted = build->manifest.count > 0 || build->options->shard_count > 1 ? is_wanted : NULL, .user = build};
+	const struct source_options options = {.notice = notice_take,
+	                                       .refused = refusal_take,
+	                                       .charset = build->options->charset,
+	                                       .wanted =
+	                                           build->manifest.count > 0 || build->options->shard_count > 1 ? is_wanted : NULL,
+	                                       .user = build};
 	bp_error error;
 
 	if (source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count, &options, &build->sources,

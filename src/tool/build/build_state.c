@@ -6,10 +6,7 @@
 #include "tool/interrupt.h"
 #include "tool/report.h"
 
-bool build_goes_on(const struct build *build)
-{
-	return !build->stopped && !interrupt_signal();
-}
+bool build_goes_on(const struct build *build) { return !build->stopped && !interrupt_signal(); }
 
 void build_stop(struct build *build, const char *file, const char *material, const bp_error *error)
 {
@@ -19,5 +16,6 @@ void build_stop(struct build *build, const char *file, const char *material, con
 
 bool build_shard_has(const struct build_options *options, const char *name)
 {
-	return options->shard_count <= 1 || bytes_crc32((const uint8_t *)name, strlen(name)) % options->shard_count == options->shard - 1;
+	return options->shard_count <= 1 ||
+	       bytes_crc32((const uint8_t *)name, strlen(name)) % options->shard_count == options->shard - 1;
 }

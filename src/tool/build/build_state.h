@@ -21,20 +21,20 @@ struct build {
 	const struct build_options *options;
 	struct manifest manifest;
 	struct source_list sources;
-	bool scanned;            /* sources is filled */
-	struct items items;      /* those that workers read themselves, by name; then members of streams as they turn up */
-	size_t listed_count;     /* of items, the former: item i is sources.items[i] */
-	size_t *order;           /* of the listed items, the order in which workers get them */
-	size_t submitted;        /* of these, how many were handed to workers */
-	size_t reported;         /* items whose outcome has been reported: always the first ones */
+	bool scanned;             /* sources is filled */
+	struct items items;       /* those that workers read themselves, by name; then members of streams as they turn up */
+	size_t listed_count;      /* of items, the former: item i is sources.items[i] */
+	size_t *order;            /* of the listed items, the order in which workers get them */
+	size_t submitted;         /* of these, how many were handed to workers */
+	size_t reported;          /* items whose outcome has been reported: always the first ones */
 	struct container *stream; /* the stream that is being read */
-	size_t stream_next;      /* the stream after it, in sources.streams */
+	size_t stream_next;       /* the stream after it, in sources.streams */
 	struct workers *workers;
 	struct spool spool;
 	struct build_totals totals;
 	uint64_t bytes_total, bytes_done; /* of the listed items, for the progress bar */
-	bp_archive *previous;    /* with --update, the archive that is there already; else NULL */
-	bool stopped;            /* after an error that ends the build; it has been reported */
+	bp_archive *previous;             /* with --update, the archive that is there already; else NULL */
+	bool stopped;                     /* after an error that ends the build; it has been reported */
 };
 
 /* True when the build goes on: no error that ends it, no signal. */

@@ -63,8 +63,9 @@ static void checksum_add(void *user, const void *bytes, size_t count)
 }
 
 /* The material's record: from the older archive, from the file itself, or, as nearly always, by fitting. */
-static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice, const struct carried *carried,
-                            struct delivery *delivery, uint8_t **record, size_t *record_bytes, bp_error *error)
+static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice,
+                            const struct carried *carried, struct delivery *delivery, uint8_t **record, size_t *record_bytes,
+                            bp_error *error)
 {
 	const struct fit_options *options = &build->options->fit;
 	bp_status status = BP_OK;
@@ -83,8 +84,8 @@ static bp_status record_get(const struct build *build, const char *name, const s
 }
 
 /* Both in one piece. The record is freed. */
-static bp_status delivery_make(const struct delivery *delivery, uint8_t *record, size_t record_bytes, uint8_t **out, size_t *out_bytes,
-                               bp_error *error)
+static bp_status delivery_make(const struct delivery *delivery, uint8_t *record, size_t record_bytes, uint8_t **out,
+                               size_t *out_bytes, bp_error *error)
 {
 	uint8_t *whole = malloc(sizeof *delivery + record_bytes);
 	if (whole) {

@@ -16,7 +16,7 @@ struct item {
 	enum item_state state;
 	uint32_t record_bytes;
 	uint64_t spool_offset;
-	struct outcome *outcome;   /* from the result until it is reported, which happens in the items' order */
+	struct outcome *outcome; /* from the result until it is reported, which happens in the items' order */
 };
 
 struct items {

@@ -23,8 +23,8 @@ struct parser {
 	char *next, *end; /* of the text that is left */
 	uint32_t line;
 	enum column columns[COLUMNS_MAX];
-	bool decided; /* the first line has been seen */
-	uint64_t offset;     /* of the line, for errors */
+	bool decided;    /* the first line has been seen */
+	uint64_t offset; /* of the line, for errors */
 };
 
 static bp_status refuse(const struct parser *parser, const char *what, const char *found, bp_error *error)
@@ -116,9 +116,7 @@ static bp_status entry_parse(const struct parser *parser, char **cells, size_t c
 	for (size_t i = 0; i < count; i++) {
 		char *cell = cells[i];
 		switch (parser->columns[i]) {
-		case COLUMN_NAME:
-			entry->name = name_bare(cell);
-			break;
+		case COLUMN_NAME: entry->name = name_bare(cell); break;
 		case COLUMN_BYTES:
 			if (*cell && !bytes_parse(cell, &entry->bytes))
 				return refuse(parser, "bytes: expected a whole number, found", cell, error);
@@ -129,8 +127,7 @@ static bp_status entry_parse(const struct parser *parser, char **cells, size_t c
 				return refuse(parser, "sha256: expected 64 hexadecimal digits, found", cell, error);
 			entry->has_sha256 = *cell;
 			break;
-		case COLUMN_OTHER:
-			break;
+		case COLUMN_OTHER: break;
 		}
 	}
 	if (!entry->name)
@@ -154,8 +151,8 @@ static bp_status duplicates_refuse(const struct manifest *manifest, bp_error *er
 	for (size_t i = 1; i < manifest->count; i++) {
 		const struct manifest_entry *a = &manifest->entries[i - 1], *b = &manifest->entries[i];
 		if (!strcmp(a->name, b->name))
-			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "line %" PRIu32 ": '%.100s' stands in line %" PRIu32 " already",
-			                 b->line, b->name, a->line);
+			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+			                 "line %" PRIu32 ": '%.100s' stands in line %" PRIu32 " already", b->line, b->name, a->line);
 	}
 	return BP_OK;
 }

@@ -12,7 +12,8 @@ void outcomes_show_progress(const struct build *build)
 {
 	uint64_t done = build->totals.packed + build->totals.refused;
 	if (build->sources.stream_count == 0)
-		progress_show(done, build->items.count, build->bytes_total > 0 ? (double)build->bytes_done / (double)build->bytes_total : 0);
+		progress_show(done, build->items.count,
+		              build->bytes_total > 0 ? (double)build->bytes_done / (double)build->bytes_total : 0);
 	else if (build->manifest.count > 0)
 		progress_show(done, build->manifest.count, (double)done / (double)build->manifest.count);
 	else

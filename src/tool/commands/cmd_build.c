@@ -10,8 +10,20 @@
 #include <stdlib.h>
 
 enum { BUDGET_LEAST = 1000, BUDGET_MOST = 4000000, BUDGET_USUAL = 60400, EFFORT_USUAL = 5 };
-enum { OPTION_PROFILE = OPTION_LONG, OPTION_BUDGET, OPTION_MAX_ERROR, OPTION_EFFORT, OPTION_MANIFEST, OPTION_STRICT, OPTION_UPDATE,
-       OPTION_JSON, OPTION_ANY_LATTICE, OPTION_SHARD, OPTION_FORCE, OPTION_CHARSET };
+enum {
+	OPTION_PROFILE = OPTION_LONG,
+	OPTION_BUDGET,
+	OPTION_MAX_ERROR,
+	OPTION_EFFORT,
+	OPTION_MANIFEST,
+	OPTION_STRICT,
+	OPTION_UPDATE,
+	OPTION_JSON,
+	OPTION_ANY_LATTICE,
+	OPTION_SHARD,
+	OPTION_FORCE,
+	OPTION_CHARSET
+};
 
 enum { SHARDS_MOST = 65536 };
 
@@ -131,34 +143,33 @@ const struct command command_build = {
 	.name = "build",
 	.run = build_main,
 	.description = "pack measured materials into an archive",
-	.usage =
-		"Usage: brdfpack build -o OUT.bpk [OPTION]... INPUT...\n"
-		"Packs measured materials into an archive. INPUT is a MERL file, a folder (searched to the\n"
-		"bottom), or a tar or zip, plain or compressed. A material's name is its file's stem.\n"
-		"\n"
-		"  -o, --output OUT.bpk   the archive; an older one is replaced only by a whole one\n"
-		"      --force            replace what is there also when it is an input, or no archive\n"
-		"  -j, --jobs N           worker processes (1 to 256; default: the usable cores);\n"
-		"                         the archive's bytes do not depend on it\n"
-		"      --profile NAME     'spectral' (unless told otherwise), or 'paper': the paper's method\n"
-		"      --budget BYTES     largest record of a material (1000 to 4000000; default 60400);\n"
-		"                         BYTES may end in k, M, KiB or MiB\n"
-		"      --max-error E      instead: the smallest record whose log RMSE is at most E\n"
-		"      --effort N         1 (fast) to 9 (small); default 5\n"
-		"      --manifest FILE    only the listed materials; where the list has sizes and SHA-256,\n"
-		"                         a file that differs is refused\n"
-		"      --charset NAME     the character set of names in tars and zips that are not UTF-8\n"
-		"                         (CP437, SHIFT_JIS, ISO-8859-1 ...)\n"
-		"      --strict           write no archive when a material is refused or missing\n"
-		"      --update           take the records of unchanged files (the same SHA-256, options and\n"
-		"                         codec) from the OUT.bpk that is there; what the inputs no longer\n"
-		"                         hold is dropped\n"
-		"      --shard K/N        only the K-th of N parts of the materials, chosen by their names: N builds\n"
-		"                         of the same inputs, on as many machines, then merge --expect N\n"
-		"      --json             one line per material and a summary line, on standard output\n"
-		"  -q, --quiet            no progress bar and no warnings\n"
-		"      --any-lattice      accept files of other extents than MERL's 90 90 180 (for tests)\n"
-		"  -h, --help             this text\n"
-		"\n"
-		"What cannot be packed is named with the reason, the others are packed, and the exit code is 1.\n",
+	.usage = "Usage: brdfpack build -o OUT.bpk [OPTION]... INPUT...\n"
+			 "Packs measured materials into an archive. INPUT is a MERL file, a folder (searched to the\n"
+			 "bottom), or a tar or zip, plain or compressed. A material's name is its file's stem.\n"
+			 "\n"
+			 "  -o, --output OUT.bpk   the archive; an older one is replaced only by a whole one\n"
+			 "      --force            replace what is there also when it is an input, or no archive\n"
+			 "  -j, --jobs N           worker processes (1 to 256; default: the usable cores);\n"
+			 "                         the archive's bytes do not depend on it\n"
+			 "      --profile NAME     'spectral' (unless told otherwise), or 'paper': the paper's method\n"
+			 "      --budget BYTES     largest record of a material (1000 to 4000000; default 60400);\n"
+			 "                         BYTES may end in k, M, KiB or MiB\n"
+			 "      --max-error E      instead: the smallest record whose log RMSE is at most E\n"
+			 "      --effort N         1 (fast) to 9 (small); default 5\n"
+			 "      --manifest FILE    only the listed materials; where the list has sizes and SHA-256,\n"
+			 "                         a file that differs is refused\n"
+			 "      --charset NAME     the character set of names in tars and zips that are not UTF-8\n"
+			 "                         (CP437, SHIFT_JIS, ISO-8859-1 ...)\n"
+			 "      --strict           write no archive when a material is refused or missing\n"
+			 "      --update           take the records of unchanged files (the same SHA-256, options and\n"
+			 "                         codec) from the OUT.bpk that is there; what the inputs no longer\n"
+			 "                         hold is dropped\n"
+			 "      --shard K/N        only the K-th of N parts of the materials, chosen by their names: N builds\n"
+			 "                         of the same inputs, on as many machines, then merge --expect N\n"
+			 "      --json             one line per material and a summary line, on standard output\n"
+			 "  -q, --quiet            no progress bar and no warnings\n"
+			 "      --any-lattice      accept files of other extents than MERL's 90 90 180 (for tests)\n"
+			 "  -h, --help             this text\n"
+			 "\n"
+			 "What cannot be packed is named with the reason, the others are packed, and the exit code is 1.\n",
 };

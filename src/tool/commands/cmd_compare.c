@@ -28,16 +28,13 @@ struct compare {
 	struct source_list sources;
 	struct compare_item *items;
 	size_t count, printed, failed;
-	bool headed;      /* the table's head has been printed */
-	bool images_made; /* the pictures' folder is ours */
+	bool headed;         /* the table's head has been printed */
+	bool images_made;    /* the pictures' folder is ours */
 	const char **wanted; /* the items' names, sorted: for source_scan */
 	struct compare_job job;
 };
 
-static int names_ascending(const void *a, const void *b)
-{
-	return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
+static int names_ascending(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
 
 static bool name_wanted(void *user, const char *name)
 {
@@ -133,8 +130,7 @@ static bool images_check(const struct compare *compare)
 	return all;
 }
 
-static bp_status images_write(const struct compare *compare, const struct compare_item *item, const uint8_t *png,
-                              bp_error *error)
+static bp_status images_write(const struct compare *compare, const struct compare_item *item, const uint8_t *png, bp_error *error)
 {
 	bp_status status = BP_OK;
 	for (int l = 0; l < LIGHTING_COUNT && status == BP_OK; l++) {
@@ -212,8 +208,11 @@ static unsigned worker_count(const struct compare *compare)
 static bp_status materials_measure(struct compare *compare, bp_error *error)
 {
 	struct workers *workers;
-	struct workers_options options = {.count = worker_count(compare), .work = compare_work, .work_user = &compare->job,
-	                                  .result = result_take, .result_user = compare};
+	struct workers_options options = {.count = worker_count(compare),
+	                                  .work = compare_work,
+	                                  .work_user = &compare->job,
+	                                  .result = result_take,
+	                                  .result_user = compare};
 	compare->job.items = compare->items;
 	bp_status status = plans_prepare(compare, error);
 	if (status == BP_OK)
@@ -276,9 +275,13 @@ static int materials_compare(struct compare *compare)
 static int compare_main(const struct command *self, int argc, char **argv)
 {
 	enum { LIGHT = OPTION_LONG, SIZE, JSON, IMAGES, FORCE };
-	static const struct option names[] = {{"light", required_argument, NULL, LIGHT}, {"size", required_argument, NULL, SIZE},
-	                                      {"json", no_argument, NULL, JSON}, {"images", required_argument, NULL, IMAGES},
-	                                      {"jobs", required_argument, NULL, 'j'}, {"force", no_argument, NULL, FORCE}, {0}};
+	static const struct option names[] = {{"light", required_argument, NULL, LIGHT},
+	                                      {"size", required_argument, NULL, SIZE},
+	                                      {"json", no_argument, NULL, JSON},
+	                                      {"images", required_argument, NULL, IMAGES},
+	                                      {"jobs", required_argument, NULL, 'j'},
+	                                      {"force", no_argument, NULL, FORCE},
+	                                      {0}};
 	struct compare compare = {.workers = cores_usable(), .report.lightings = LIGHTINGS_ALL};
 	enum lighting lighting;
 	int64_t jobs, size = SPHERE_SIZE;
@@ -295,15 +298,9 @@ static int compare_main(const struct command *self, int argc, char **argv)
 			if (!option_integer(self, "--size", optarg, 1, COMPARE_SIZE_MAX, &size))
 				return EXIT_USAGE;
 			break;
-		case FORCE:
-			compare.force = true;
-			break;
-		case JSON:
-			compare.report.json = true;
-			break;
-		case IMAGES:
-			compare.images = optarg;
-			break;
+		case FORCE: compare.force = true; break;
+		case JSON: compare.report.json = true; break;
+		case IMAGES: compare.images = optarg; break;
 		case 'j':
 			if (!option_integer(self, "-j", optarg, 1, WORKERS_MAX, &jobs))
 				return EXIT_USAGE;
@@ -318,7 +315,8 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	compare.folder = argv[optind + 1];
 	if (!selection_open(&compare.selection, compare.archive_path, argv + optind + 2, argc - optind - 2))
 		return EXIT_FAILED;
-	compare.job = (struct compare_job){.archive = compare.selection.archive, .images = compare.images != NULL,
+	compare.job = (struct compare_job){.archive = compare.selection.archive,
+	                                   .images = compare.images != NULL,
 	                                   .plans = {.lightings = compare.report.lightings, .size = (uint32_t)size}};
 	int code = EXIT_FAILED;
 	if (compare.selection.count > 0) {
@@ -343,23 +341,24 @@ const struct command command_compare = {
 	.run = compare_main,
 	.description = "measure how far an archive is from the measured files",
 	.usage = "Usage: brdfpack compare [OPTION]... ARCHIVE MEASURED [NAME]...\n"
-	         "Compares materials of the archive (all, or those named) with the MERL files of the same names in the folder\n"
-	         "MEASURED (or zip), and prints one row per material, then median, worst and mean:\n"
-	         "  PSNR       of a rendered sphere in dB, from 8-bit and from float sRGB values\n"
-	         "  dE ITP     mean colour difference of its pixels (ITU-R BT.2124); 1 is just noticeable at best\n"
-	         "  log RMSE   root mean square of log10((decoded + 1e-3)/(measured + 1e-3))\n"
-	         "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
-	         "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"
-	         "  albedo     the largest share of light sent back, for directions 0 to 85 degrees from the normal\n"
-	         "Where the file is the one that was packed, the errors that the record tells of each layer are measured again and must agree.\n"
-	         "Cells that are invalid in the measured file count in nothing: they are black on both sides.\n"
-	         "\n"
-	         "      --light=NAME   key, env or point alone (all three)\n"
-	         "      --size=N       pixels of the sphere, 1 to 512 (160: what published figures are made with)\n"
-	         "      --images=DIR   also write DIR/NAME-LIGHT.png: measured, decoded, difference x10;\n"
-	         "                     older ones that brdfpack drew are replaced\n"
-	         "      --force        replace whatever is there\n"
-	         "      --json         one JSON object per material, then a summary object\n"
-	         "  -j, --jobs=N       worker processes (one per usable core)\n"
-	         "  -h, --help         this text\n",
+			 "Compares materials of the archive (all, or those named) with the MERL files of the same names in the folder\n"
+			 "MEASURED (or zip), and prints one row per material, then median, worst and mean:\n"
+			 "  PSNR       of a rendered sphere in dB, from 8-bit and from float sRGB values\n"
+			 "  dE ITP     mean colour difference of its pixels (ITU-R BT.2124); 1 is just noticeable at best\n"
+			 "  log RMSE   root mean square of log10((decoded + 1e-3)/(measured + 1e-3))\n"
+			 "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
+			 "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"
+			 "  albedo     the largest share of light sent back, for directions 0 to 85 degrees from the normal\n"
+			 "Where the file is the one that was packed, the errors that the record tells of each layer are measured again and "
+			 "must agree.\n"
+			 "Cells that are invalid in the measured file count in nothing: they are black on both sides.\n"
+			 "\n"
+			 "      --light=NAME   key, env or point alone (all three)\n"
+			 "      --size=N       pixels of the sphere, 1 to 512 (160: what published figures are made with)\n"
+			 "      --images=DIR   also write DIR/NAME-LIGHT.png: measured, decoded, difference x10;\n"
+			 "                     older ones that brdfpack drew are replaced\n"
+			 "      --force        replace whatever is there\n"
+			 "      --json         one JSON object per material, then a summary object\n"
+			 "  -j, --jobs=N       worker processes (one per usable core)\n"
+			 "  -h, --help         this text\n",
 };

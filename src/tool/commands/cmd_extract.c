@@ -17,7 +17,7 @@
 struct table {
 	struct expansion expansion;
 	uint8_t *below;
-	double limit; /* of `below` */
+	double limit;     /* of `below` */
 	bool any_lattice; /* also tables of more than twice as many cells as MERL's: few bytes of an archive can ask for gigabytes */
 };
 
@@ -44,8 +44,8 @@ static bp_status table_fit(struct table *table, const struct model *model, bp_er
 	if (status)
 		return status;
 	table->below = malloc(cells);
-	status = table->below ? lattice_below_horizon(model->dims, model->horizon_limit, table->below, error)
-	                      : error_memory(error, cells);
+	status =
+		table->below ? lattice_below_horizon(model->dims, model->horizon_limit, table->below, error) : error_memory(error, cells);
 	table->limit = model->horizon_limit;
 	if (status)
 		table_free(table);
@@ -56,7 +56,8 @@ static bp_status table_fit(struct table *table, const struct model *model, bp_er
 enum form { FORM_MERL, FORM_PLAIN, FORM_JSON };
 
 /* The record to carry: NULL where it is damaged, but not in anything that this program decodes, which it has done. */
-static bp_status record_read(const struct selection *selection, const struct index_entry *entry, uint8_t **record, bp_error *error)
+static bp_status record_read(const struct selection *selection, const struct index_entry *entry, uint8_t **record,
+                             bp_error *error)
 {
 	struct record_head head;
 	const bp_status status = archive_entry_record(selection->archive, entry, &head, record, error);
@@ -69,8 +70,9 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 	struct model *model = NULL;
 	uint8_t *record = NULL;
 	if (!table->any_lattice && lattice_cells(head->dims) > 2 * lattice_cells(LATTICE_MERL))
-		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "a table of %u x %u x %u cells would take %.0f MB; with --any-lattice it is written",
-		                 head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, (double)merl_file_bytes(head->dims) / 1e6);
+		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+		                 "a table of %u x %u x %u cells would take %.0f MB; with --any-lattice it is written", head->dims.theta_h,
+		                 head->dims.theta_d, head->dims.phi_d, (double)merl_file_bytes(head->dims) / 1e6);
 	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
 	if (!status && !plain)
 		status = record_read(selection, entry, &record, error);
@@ -141,7 +143,8 @@ static bp_status material_write(void *user, uint64_t n, const char *path, enum o
 		return status;
 	if (extraction->form == FORM_JSON)
 		return json_write(&head, path, rule, error);
-	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->table, error);
+	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->table,
+	                  error);
 }
 
 static void material_failed(void *user, uint64_t n, const bp_error *error)
@@ -154,10 +157,12 @@ static void material_failed(void *user, uint64_t n, const bp_error *error)
 static int extract_main(const struct command *self, int argc, char **argv)
 {
 	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_FORCE, OPTION_ANY_LATTICE };
-	static const struct option names[] = {
-		{"directory", required_argument, NULL, 'C'}, {"format", required_argument, NULL, OPTION_FORMAT},
-		{"plain", no_argument, NULL, OPTION_PLAIN}, {"force", no_argument, NULL, OPTION_FORCE},
-		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE}, {0}};
+	static const struct option names[] = {{"directory", required_argument, NULL, 'C'},
+	                                      {"format", required_argument, NULL, OPTION_FORMAT},
+	                                      {"plain", no_argument, NULL, OPTION_PLAIN},
+	                                      {"force", no_argument, NULL, OPTION_FORCE},
+	                                      {"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
+	                                      {0}};
 	const char *folder = ".";
 	struct extraction extraction = {.form = FORM_MERL};
 	bool json = false, plain = false, force = false;
@@ -185,8 +190,14 @@ static int extract_main(const struct command *self, int argc, char **argv)
 	if (opened != EXIT_OK)
 		return opened;
 	extraction.form = json ? FORM_JSON : plain ? FORM_PLAIN : FORM_MERL;
-	const struct folder_set set = {.folder = folder, .suffix = json ? "json" : "binary", .count = extraction.selection.count, .force = force,
-	                               .user = &extraction, .name = material_name, .write = material_write, .failed = material_failed};
+	const struct folder_set set = {.folder = folder,
+	                               .suffix = json ? "json" : "binary",
+	                               .count = extraction.selection.count,
+	                               .force = force,
+	                               .user = &extraction,
+	                               .name = material_name,
+	                               .write = material_write,
+	                               .failed = material_failed};
 	bool whole = folder_write(&set) && !extraction.selection.incomplete;
 	table_free(&extraction.table);
 	selection_close(&extraction.selection);
@@ -198,17 +209,17 @@ const struct command command_extract = {
 	.run = extract_main,
 	.description = "write materials as MERL files, or their parameters as JSON",
 	.usage = "Usage: brdfpack extract [-C DIR] [OPTION]... ARCHIVE [NAME]...\n"
-	         "Writes DIR/NAME.binary for the named materials, or for all. When a file of one of these names\n"
-	         "is there and differs, nothing is written. Cells wholly below the horizon\n"
-	         "are negative, all others hold the model's value. The negative ones carry the material's\n"
-	         "record, which a build with the same profile and a budget that holds it takes over as it\n"
-	         "is, unless a value was changed.\n"
-	         "\n"
-	         "  -C, --directory DIR  where to (default: here); created when it is missing\n"
-	         "      --format merl    MERL files (the default)\n"
-	         "      --format json    DIR/NAME.json with the parameters instead\n"
-	         "      --force          replace files that are there\n"
-	         "      --any-lattice    also tables of more than twice as many cells as MERL's\n"
-	         "      --plain          no record: every cell below the horizon is -1\n"
-	         "  -h, --help           this text\n",
+			 "Writes DIR/NAME.binary for the named materials, or for all. When a file of one of these names\n"
+			 "is there and differs, nothing is written. Cells wholly below the horizon\n"
+			 "are negative, all others hold the model's value. The negative ones carry the material's\n"
+			 "record, which a build with the same profile and a budget that holds it takes over as it\n"
+			 "is, unless a value was changed.\n"
+			 "\n"
+			 "  -C, --directory DIR  where to (default: here); created when it is missing\n"
+			 "      --format merl    MERL files (the default)\n"
+			 "      --format json    DIR/NAME.json with the parameters instead\n"
+			 "      --force          replace files that are there\n"
+			 "      --any-lattice    also tables of more than twice as many cells as MERL's\n"
+			 "      --plain          no record: every cell below the horizon is -1\n"
+			 "  -h, --help           this text\n",
 };

@@ -36,7 +36,8 @@ static void number_print(double value)
 static void row_print(const struct record_head *head, int width)
 {
 	text_print(head->name, width);
-	printf(" %9" PRIu32 "  %-8s %6" PRIu32 "  %8.5f ", head->record_bytes, profile_name(head->profile), head->layer_count, head_fidelity(head)->log_rmse);
+	printf(" %9" PRIu32 "  %-8s %6" PRIu32 "  %8.5f ", head->record_bytes, profile_name(head->profile), head->layer_count,
+	       head_fidelity(head)->log_rmse);
 	for (int c = 0; c < 3; c++)
 		number_print(head->colour[c].diffuse);
 	putchar(' ');
@@ -49,12 +50,15 @@ static void row_print(const struct record_head *head, int width)
 static const char *section_channel(unsigned type)
 {
 	static const char *const ENDS[] = {", R", ", G", ", B"};
-	return type >= SECTION_MARGINALS && type < SECTION_MARGINALS + 3 * SECTION_CHANNEL ? ENDS[(type - SECTION_MARGINALS) / SECTION_CHANNEL] : "";
+	return type >= SECTION_MARGINALS && type < SECTION_MARGINALS + 3 * SECTION_CHANNEL
+	           ? ENDS[(type - SECTION_MARGINALS) / SECTION_CHANNEL]
+	           : "";
 }
 
 static const char *section_name(unsigned type)
 {
-	switch (type < SECTION_MARGINALS + 3 * SECTION_CHANNEL ? (type - SECTION_MARGINALS) % SECTION_CHANNEL + SECTION_MARGINALS : type) {
+	switch (type < SECTION_MARGINALS + 3 * SECTION_CHANNEL ? (type - SECTION_MARGINALS) % SECTION_CHANNEL + SECTION_MARGINALS
+	                                                       : type) {
 	case SECTION_MARGINALS: return "marginals";
 	case SECTION_PAIR_HD: return "c_hd";
 	case SECTION_PAIR_HPHI: return "c_hphi";
@@ -88,13 +92,16 @@ static void material_print(const struct record_head *head)
 	       head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->horizon_limit);
 	for (uint32_t i = 0; i < head->layer_count; i++) {
 		const struct record_layer *layer = &head->layers[i];
-		printf("  layer %-3" PRIu32 "   %8" PRIu32 " bytes so far  log RMSE %.6f, of what is seen %.6f  cube-root RMSE %.6f  largest relative error %.4g\n", i,
-		       layer->bytes, layer->fidelity.log_rmse, layer->fidelity.seen_log_rmse, layer->fidelity.cube_root_rmse, layer->fidelity.largest_relative);
+		printf("  layer %-3" PRIu32 "   %8" PRIu32
+		       " bytes so far  log RMSE %.6f, of what is seen %.6f  cube-root RMSE %.6f  largest relative error %.4g\n",
+		       i, layer->bytes, layer->fidelity.log_rmse, layer->fidelity.seen_log_rmse, layer->fidelity.cube_root_rmse,
+		       layer->fidelity.largest_relative);
 	}
 	for (uint32_t i = 0; i < head->section_count; i++) {
 		const struct record_section *section = &head->sections[i];
-		printf("  section %-3" PRIu32 " %8" PRIu32 " bytes  layer %u  type %u (%s%s)  codec %u.%u", i, section->bytes, section->layer,
-		       section->type, section_name(section->type), section_channel(section->type), section->codec, section->version);
+		printf("  section %-3" PRIu32 " %8" PRIu32 " bytes  layer %u  type %u (%s%s)  codec %u.%u", i, section->bytes,
+		       section->layer, section->type, section_name(section->type), section_channel(section->type), section->codec,
+		       section->version);
 		if (section->error == section->error)
 			printf("  error %.6g", section->error);
 		putchar('\n');
@@ -206,9 +213,9 @@ const struct command command_list = {
 	.run = list_main,
 	.description = "show what is in an archive",
 	.usage = "Usage: brdfpack list [OPTION]... ARCHIVE [NAME]...\n"
-	         "Prints one row per material, and totals. With names: everything about these materials.\n"
-	         "\n"
-	         "      --sha256  also the SHA-256 of the whole file, to sign or to compare; reads all of it\n"
-	         "      --json    one JSON object per material, then a summary object\n"
-	         "  -h, --help    this text\n",
+			 "Prints one row per material, and totals. With names: everything about these materials.\n"
+			 "\n"
+			 "      --sha256  also the SHA-256 of the whole file, to sign or to compare; reads all of it\n"
+			 "      --json    one JSON object per material, then a summary object\n"
+			 "  -h, --help    this text\n",
 };

@@ -23,10 +23,7 @@ static void files_allow(size_t count)
 	}
 }
 
-static bool stop(void)
-{
-	return interrupt_signal() != 0;
-}
+static bool stop(void) { return interrupt_signal() != 0; }
 
 static int merge_write(bp_archive **archives, char **paths, size_t count, const struct copy_options *options, bool quiet)
 {
@@ -58,12 +55,10 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 static int merge_main(const struct command *self, int argc, char **argv)
 {
 	enum { OPTION_REPLACE = OPTION_LONG, OPTION_EXPECT, OPTION_FORCE };
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
-	                                      {"quiet", no_argument, NULL, 'q'},
-	                                      {"replace", no_argument, NULL, OPTION_REPLACE},
-	                                      {"expect", required_argument, NULL, OPTION_EXPECT},
-	                                      {"force", no_argument, NULL, OPTION_FORCE},
-	                                      {0}};
+	static const struct option names[] = {
+		{"output", required_argument, NULL, 'o'},       {"quiet", no_argument, NULL, 'q'},
+		{"replace", no_argument, NULL, OPTION_REPLACE}, {"expect", required_argument, NULL, OPTION_EXPECT},
+		{"force", no_argument, NULL, OPTION_FORCE},     {0}};
 	struct copy_options options = {.stop = stop};
 	bool quiet = false, force = false;
 	int64_t expected = 0;
@@ -88,7 +83,8 @@ static int merge_main(const struct command *self, int argc, char **argv)
 
 	const size_t count = (size_t)(argc - optind);
 	if (expected && (uint64_t)expected != count) {
-		report_text("%s: not written: %" PRId64 " shards are expected, %zu archive%s given", options.output, expected, count, count == 1 ? " is" : "s are");
+		report_text("%s: not written: %" PRId64 " shards are expected, %zu archive%s given", options.output, expected, count,
+		            count == 1 ? " is" : "s are");
 		return EXIT_FAILED;
 	}
 	if (!output_check(options.output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, count))
@@ -119,14 +115,14 @@ const struct command command_merge = {
 	.run = merge_main,
 	.description = "join archives, without re-encoding",
 	.usage = "Usage: brdfpack merge -o OUT.bpk [OPTION]... ARCHIVE...\n"
-	         "Joins archives; records are copied byte for byte. A name that stands in two of them is\n"
-	         "refused, and nothing is written.\n"
-	         "\n"
-	         "  -o, --output OUT.bpk  the new archive; replaces an older one that is none of the inputs\n"
-	         "      --force           also one of the inputs, or a file that is no archive\n"
-	         "      --expect N        the archives are the N shards of one build (build --shard): refuse\n"
-	         "                        another number, and records made with other options or versions\n"
-	         "      --replace         of a name that several archives have, take the last one's\n"
-	         "  -q, --quiet           say nothing on success\n"
-	         "  -h, --help            this text\n",
+			 "Joins archives; records are copied byte for byte. A name that stands in two of them is\n"
+			 "refused, and nothing is written.\n"
+			 "\n"
+			 "  -o, --output OUT.bpk  the new archive; replaces an older one that is none of the inputs\n"
+			 "      --force           also one of the inputs, or a file that is no archive\n"
+			 "      --expect N        the archives are the N shards of one build (build --shard): refuse\n"
+			 "                        another number, and records made with other options or versions\n"
+			 "      --replace         of a name that several archives have, take the last one's\n"
+			 "  -q, --quiet           say nothing on success\n"
+			 "  -h, --help            this text\n",
 };

@@ -9,15 +9,13 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-static void loss_report(void *user, const char *material, const bp_error *why)
-{
-	report_error(user, material, why);
-}
+static void loss_report(void *user, const char *material, const bp_error *why) { report_error(user, material, why); }
 
 static int recover_main(const struct command *self, int argc, char **argv)
 {
 	enum { OPTION_FORCE = OPTION_LONG };
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {"force", no_argument, NULL, OPTION_FORCE}, {0}};
+	static const struct option names[] = {
+		{"output", required_argument, NULL, 'o'}, {"force", no_argument, NULL, OPTION_FORCE}, {0}};
 	const char *output = NULL;
 	struct recovery recovery = {0};
 	bool force = false;
@@ -51,11 +49,11 @@ const struct command command_recover = {
 	.run = recover_main,
 	.description = "save what is intact in a damaged archive",
 	.usage = "Usage: brdfpack recover -o OUT.bpk DAMAGED.bpk\n"
-	         "Scans the damaged archive for records, with or without its index, and writes every record whose\n"
-	         "checksums hold into a new archive, unchanged. Says what was lost, as far as a record's head or the\n"
-	         "index tells; exit code 1 when anything was.\n"
-	         "\n"
-	         "  -o, --output FILE  the new archive; replaces an older one, but not the damaged one\n"
-	         "      --force        also the damaged one, or a file that is no archive\n"
-	         "  -h, --help         this text\n",
+			 "Scans the damaged archive for records, with or without its index, and writes every record whose\n"
+			 "checksums hold into a new archive, unchanged. Says what was lost, as far as a record's head or the\n"
+			 "index tells; exit code 1 when anything was.\n"
+			 "\n"
+			 "  -o, --output FILE  the new archive; replaces an older one, but not the damaged one\n"
+			 "      --force        also the damaged one, or a file that is no archive\n"
+			 "  -h, --help         this text\n",
 };

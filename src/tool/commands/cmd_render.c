@@ -72,8 +72,11 @@ static int material_render(const struct render_options *options, const struct ma
 static int render_main(const struct command *self, int argc, char **argv)
 {
 	enum { LIGHT = OPTION_LONG, SIZE, FORCE };
-	static const struct option names[] = {{"light", required_argument, NULL, LIGHT}, {"size", required_argument, NULL, SIZE},
-	                                      {"output", required_argument, NULL, 'o'}, {"force", no_argument, NULL, FORCE}, {0}};
+	static const struct option names[] = {{"light", required_argument, NULL, LIGHT},
+	                                      {"size", required_argument, NULL, SIZE},
+	                                      {"output", required_argument, NULL, 'o'},
+	                                      {"force", no_argument, NULL, FORCE},
+	                                      {0}};
 	struct render_options options = {.lighting = LIGHTING_KEY, .size = SPHERE_SIZE};
 	struct material material;
 	int64_t size;
@@ -81,12 +84,8 @@ static int render_main(const struct command *self, int argc, char **argv)
 
 	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
 		switch (option) {
-		case 'o':
-			options.output = optarg;
-			break;
-		case FORCE:
-			options.force = true;
-			break;
+		case 'o': options.output = optarg; break;
+		case FORCE: options.force = true; break;
 		case LIGHT:
 			if (!lighting_find(optarg, &options.lighting))
 				return report_usage(self, "--light: '%s' is none of key, env and point", optarg);
@@ -116,14 +115,14 @@ const struct command command_render = {
 	.run = render_main,
 	.description = "draw a sphere of a material",
 	.usage = "Usage: brdfpack render [OPTION]... -o OUT.png|OUT.pfm ARCHIVE NAME\n"
-	         "       brdfpack render [OPTION]... -o OUT.png|OUT.pfm MERL-FILE\n"
-	         "Draws a sphere under fixed lights. A .png file is exposed so that the 90th percentile of the covered\n"
-	         "pixels becomes 0.9, in sRGB; a .pfm file holds the linear radiances as float.\n"
-	         "\n"
-	         "  -o, --output=FILE  the image to write; an older .png that brdfpack drew is replaced\n"
-	         "      --force        replace whatever is there\n"
-	         "      --light=NAME   key: 29 directional lights (default); env: a sky of 400 directions;\n"
-	         "                     point: four point lights\n"
-	         "      --size=N       width and height in pixels, 1 to 4096 (160)\n"
-	         "  -h, --help         this text\n",
+			 "       brdfpack render [OPTION]... -o OUT.png|OUT.pfm MERL-FILE\n"
+			 "Draws a sphere under fixed lights. A .png file is exposed so that the 90th percentile of the covered\n"
+			 "pixels becomes 0.9, in sRGB; a .pfm file holds the linear radiances as float.\n"
+			 "\n"
+			 "  -o, --output=FILE  the image to write; an older .png that brdfpack drew is replaced\n"
+			 "      --force        replace whatever is there\n"
+			 "      --light=NAME   key: 29 directional lights (default); env: a sky of 400 directions;\n"
+			 "                     point: four point lights\n"
+			 "      --size=N       width and height in pixels, 1 to 4096 (160)\n"
+			 "  -h, --help         this text\n",
 };

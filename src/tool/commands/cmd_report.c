@@ -11,9 +11,11 @@
 static int report_main(const struct command *self, int argc, char **argv)
 {
 	enum { LIGHT = OPTION_LONG, MEASURED, EMBED, FORCE };
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {"measured", required_argument, NULL, MEASURED},
-	                                      {"light", required_argument, NULL, LIGHT}, {"embed", no_argument, NULL, EMBED},
-	                                      {"jobs", required_argument, NULL, 'j'}, {"quiet", no_argument, NULL, 'q'}, {"force", no_argument, NULL, FORCE}, {0}};
+	static const struct option names[] = {
+		{"output", required_argument, NULL, 'o'},  {"measured", required_argument, NULL, MEASURED},
+		{"light", required_argument, NULL, LIGHT}, {"embed", no_argument, NULL, EMBED},
+		{"jobs", required_argument, NULL, 'j'},    {"quiet", no_argument, NULL, 'q'},
+		{"force", no_argument, NULL, FORCE},       {0}};
 	struct page_options options = {.workers = cores_usable(), .lightings = (1u << LIGHTING_COUNT) - 1};
 	struct selection selection;
 	enum lighting lighting;
@@ -23,26 +25,16 @@ static int report_main(const struct command *self, int argc, char **argv)
 
 	while ((option = options_next(self, argc, argv, "o:j:q", names)) >= 0)
 		switch (option) {
-		case 'o':
-			options.output = optarg;
-			break;
-		case MEASURED:
-			options.measured = optarg;
-			break;
+		case 'o': options.output = optarg; break;
+		case MEASURED: options.measured = optarg; break;
 		case LIGHT:
 			if (!lighting_find(optarg, &lighting))
 				return report_usage(self, "--light: '%s' is none of key, env and point", optarg);
 			options.lightings = 1u << lighting;
 			break;
-		case EMBED:
-			options.embed = true;
-			break;
-		case FORCE:
-			force = true;
-			break;
-		case 'q':
-			options.quiet = true;
-			break;
+		case EMBED: options.embed = true; break;
+		case FORCE: force = true; break;
+		case 'q': options.quiet = true; break;
 		case 'j':
 			if (!option_integer(self, "-j", optarg, 1, WORKERS_MAX, &jobs))
 				return EXIT_USAGE;
@@ -69,21 +61,22 @@ const struct command command_report = {
 	.name = "report",
 	.run = report_main,
 	.description = "make a page that shows an archive",
-	.usage = "Usage: brdfpack report [OPTION]... -o OUT.html ARCHIVE [NAME]...\n"
-	         "Writes one HTML page that shows the materials (all, or those named): spheres under three lightings, polar plots,\n"
-	         "directional albedo, slices, what each layer costs and leaves, the parameters, and what is known of the source; of\n"
-	         "the archive bytes against error, the ten with the largest error, and what verify said. It needs no network, and\n"
-	         "no script to be read. With more than 150 materials it is a contact sheet.\n"
-	         "Where the viewer was built (make viewer), the page also reads the archive itself when it is embedded, or lies\n"
-	         "beside the page on a web server: spheres to light and turn. A material that is damaged is named, the others shown,\n"
-	         "and the exit code is 1.\n"
-	         "\n"
-	         "  -o, --output=FILE    the page to write; an older one that brdfpack made is replaced\n"
-	         "      --measured=DIR   compare with the MERL files of the same names in this folder (or zip)\n"
-	         "      --light=NAME     key, env or point alone (all three)\n"
-	         "      --embed          put the archive's bytes into the page, so that the viewer works from a file\n"
-	         "      --force          replace whatever is there\n"
-	         "  -j, --jobs=N         worker processes (one per usable core)\n"
-	         "  -q, --quiet          no progress\n"
-	         "  -h, --help           this text\n",
+	.usage =
+		"Usage: brdfpack report [OPTION]... -o OUT.html ARCHIVE [NAME]...\n"
+		"Writes one HTML page that shows the materials (all, or those named): spheres under three lightings, polar plots,\n"
+		"directional albedo, slices, what each layer costs and leaves, the parameters, and what is known of the source; of\n"
+		"the archive bytes against error, the ten with the largest error, and what verify said. It needs no network, and\n"
+		"no script to be read. With more than 150 materials it is a contact sheet.\n"
+		"Where the viewer was built (make viewer), the page also reads the archive itself when it is embedded, or lies\n"
+		"beside the page on a web server: spheres to light and turn. A material that is damaged is named, the others shown,\n"
+		"and the exit code is 1.\n"
+		"\n"
+		"  -o, --output=FILE    the page to write; an older one that brdfpack made is replaced\n"
+		"      --measured=DIR   compare with the MERL files of the same names in this folder (or zip)\n"
+		"      --light=NAME     key, env or point alone (all three)\n"
+		"      --embed          put the archive's bytes into the page, so that the viewer works from a file\n"
+		"      --force          replace whatever is there\n"
+		"  -j, --jobs=N         worker processes (one per usable core)\n"
+		"  -q, --quiet          no progress\n"
+		"  -h, --help           this text\n",
 };

@@ -27,7 +27,7 @@ struct show_options {
 /* What is drawn: a measured table, a decoded one, or both, and where errors can be had, two profiles. */
 struct show {
 	struct material material;
-	struct lattice reference;   /* of --measured */
+	struct lattice reference;    /* of --measured */
 	const struct lattice *truth; /* the reference, the material's own, or NULL */
 	struct density_source measured, decoded;
 	double error_before[LATTICE_EXTENT_MAX], error_after[LATTICE_EXTENT_MAX];
@@ -38,11 +38,12 @@ struct show {
 static bool angles_parse(const struct command *command, const char *text, struct show_options *options)
 {
 	options->slice_count = 0;
-	for (const char *at = text; ; at++) {
+	for (const char *at = text;; at++) {
 		char *end;
 		double value = strtod(at, &end);
 		if (end == at || !(value >= 0 && value <= 90) || (*end && *end != ',') || options->slice_count == FIGURE_SLICES_MAX) {
-			report_usage(command, "--theta-h: '%s' is not a list of 1 to %d angles from 0 to 90 degrees", text, FIGURE_SLICES_MAX);
+			report_usage(command, "--theta-h: '%s' is not a list of 1 to %d angles from 0 to 90 degrees", text,
+			             FIGURE_SLICES_MAX);
 			return false;
 		}
 		options->theta_h[options->slice_count++] = value;
@@ -96,8 +97,8 @@ static bp_status show_measure(struct show *show, bp_error *error)
 	struct lattice_dims a = show->truth->dims, b = material->table.dims;
 	if (a.theta_h != b.theta_h || a.theta_d != b.theta_d || a.phi_d != b.phi_d)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d, a.phi_d,
-		                 b.theta_h, b.theta_d, b.phi_d);
+		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d,
+		                 a.phi_d, b.theta_h, b.theta_d, b.phi_d);
 	error_profile(show->truth, &material->table, show->error_after);
 	show->figure.error_after = show->error_after;
 	if (material->model->profile == PROFILE_PAPER) {
@@ -116,8 +117,8 @@ static void figure_describe(struct show *show, const struct show_options *option
 	const char *profile = profile_name(material->model->profile);
 
 	figure->dims = material->table.dims;
-	snprintf(figure->title, sizeof figure->title, "%s, profile %s: %sdensity c(theta_d, phi_d | theta_h)", material->name, profile,
-	         show->truth ? "error, and " : "");
+	snprintf(figure->title, sizeof figure->title, "%s, profile %s: %sdensity c(theta_d, phi_d | theta_h)", material->name,
+	         profile, show->truth ? "error, and " : "");
 	if (show->truth)
 		figure->rows[figure->row_count++] = (struct figure_row){"measured", &show->measured};
 	figure->rows[figure->row_count++] = (struct figure_row){"decoded", &show->decoded};
@@ -161,28 +162,26 @@ static int show_draw(struct show *show, const struct show_options *options)
 static int show_main(const struct command *self, int argc, char **argv)
 {
 	enum { THETA_H = OPTION_LONG, MEASURED, PROFILE, FORCE };
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'}, {"theta-h", required_argument, NULL, THETA_H},
+	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
+	                                      {"theta-h", required_argument, NULL, THETA_H},
 	                                      {"measured", required_argument, NULL, MEASURED},
-	                                      {"profile", required_argument, NULL, PROFILE}, {"force", no_argument, NULL, FORCE}, {0}};
-	struct show_options options = {.slice_count = 5, .theta_h = {5, 20, 40, 60, 80},
+	                                      {"profile", required_argument, NULL, PROFILE},
+	                                      {"force", no_argument, NULL, FORCE},
+	                                      {0}};
+	struct show_options options = {.slice_count = 5,
+	                               .theta_h = {5, 20, 40, 60, 80},
 	                               .fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_BYTES, .effort = EFFORT}};
 	int option;
 
 	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
 		switch (option) {
-		case 'o':
-			options.output = optarg;
-			break;
-		case FORCE:
-			options.force = true;
-			break;
+		case 'o': options.output = optarg; break;
+		case FORCE: options.force = true; break;
 		case THETA_H:
 			if (!angles_parse(self, optarg, &options))
 				return EXIT_USAGE;
 			break;
-		case MEASURED:
-			options.reference = optarg;
-			break;
+		case MEASURED: options.reference = optarg; break;
 		case PROFILE:
 			if (!profile_parse(optarg, &options.fit.profile))
 				return report_usage(self, "--profile: '%s' is neither spectral nor paper", optarg);
@@ -216,16 +215,16 @@ const struct command command_show = {
 	.run = show_main,
 	.description = "draw what the model does to a material",
 	.usage = "Usage: brdfpack show [OPTION]... -o OUT.png|OUT.svg ARCHIVE NAME\n"
-	         "       brdfpack show [OPTION]... -o OUT.png|OUT.svg MERL-FILE [NAME]\n"
-	         "Draws the mean absolute error of every theta_h before and after coding, and the conditional pair-copula\n"
-	         "densities of theta_d and phi_d for some theta_h side by side: 1 (white) everywhere means that the two are\n"
-	         "independent given theta_h. Grey cells were not measured. A MERL file is fitted for the purpose.\n"
-	         "\n"
-	         "  -o, --output=FILE    the picture to write; an older one that brdfpack drew is replaced\n"
-	         "      --force          replace whatever is there\n"
-	         "      --measured=PATH  the measured file of an archived material, or its folder; without it only the\n"
-	         "                       decoded densities are drawn\n"
-	         "      --theta-h=LIST   up to 12 angles in degrees (5,20,40,60,80)\n"
-	         "      --profile=NAME   how a MERL file is fitted: spectral or paper (paper)\n"
-	         "  -h, --help           this text\n",
+			 "       brdfpack show [OPTION]... -o OUT.png|OUT.svg MERL-FILE [NAME]\n"
+			 "Draws the mean absolute error of every theta_h before and after coding, and the conditional pair-copula\n"
+			 "densities of theta_d and phi_d for some theta_h side by side: 1 (white) everywhere means that the two are\n"
+			 "independent given theta_h. Grey cells were not measured. A MERL file is fitted for the purpose.\n"
+			 "\n"
+			 "  -o, --output=FILE    the picture to write; an older one that brdfpack drew is replaced\n"
+			 "      --force          replace whatever is there\n"
+			 "      --measured=PATH  the measured file of an archived material, or its folder; without it only the\n"
+			 "                       decoded densities are drawn\n"
+			 "      --theta-h=LIST   up to 12 angles in degrees (5,20,40,60,80)\n"
+			 "      --profile=NAME   how a MERL file is fitted: spectral or paper (paper)\n"
+			 "  -h, --help           this text\n",
 };

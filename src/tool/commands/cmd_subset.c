@@ -29,10 +29,7 @@ struct subset {
 	uint64_t count;
 };
 
-static bool stop(void)
-{
-	return interrupt_signal() != 0;
-}
+static bool stop(void) { return interrupt_signal() != 0; }
 
 static int ascending(const void *a, const void *b)
 {
@@ -135,8 +132,8 @@ static int subset_write(struct subset *subset)
 	if (!subset->quiet)
 		report_remark(subset->copy.output, &error);
 	if (!subset->quiet)
-		printf("%s: %" PRIu64 " material%s, %" PRIu64 " of %" PRIu64 " bytes of their records\n", subset->copy.output, totals.copied,
-		       totals.copied == 1 ? "" : "s", totals.bytes_to, totals.bytes_from);
+		printf("%s: %" PRIu64 " material%s, %" PRIu64 " of %" PRIu64 " bytes of their records\n", subset->copy.output,
+		       totals.copied, totals.copied == 1 ? "" : "s", totals.bytes_to, totals.bytes_from);
 	return subset->lacking ? EXIT_FAILED : EXIT_OK;
 }
 
@@ -197,7 +194,8 @@ static int subset_main(const struct command *self, int argc, char **argv)
 	if (option != OPTIONS_END) {
 		result = options_exit_code(option);
 	} else if (!subset.copy.output || !*subset.copy.output || optind >= argc) {
-		result = report_usage(self, subset.copy.output && *subset.copy.output ? "no archive" : "no output file; give one with -o SCENE.bpk");
+		result = report_usage(self, subset.copy.output && *subset.copy.output ? "no archive"
+		                                                                      : "no output file; give one with -o SCENE.bpk");
 	} else {
 		subset.path = subset.inputs[0] = argv[optind];
 		result = subset_run(&subset, argv + optind + 1, argc - optind - 1);
@@ -213,19 +211,19 @@ const struct command command_subset = {
 	.run = subset_main,
 	.description = "copy materials to a smaller archive, without re-encoding",
 	.usage = "Usage: brdfpack subset -o SCENE.bpk [OPTION]... ARCHIVE [NAME]...\n"
-	         "Copies the named materials, those that scene files name, or all. Records are copied byte\n"
-	         "for byte, but for layers that are left out.\n"
-	         "\n"
-	         "  -o, --output SCENE.bpk  the new archive; replaces an older one that is not the input\n"
-	         "      --force             also the input, or a file that is no archive\n"
-	         "      --max-error E       keep the fewest layers whose log RMSE is at most E; all where\n"
-	         "                          there is none\n"
-	         "      --scene FILE        also the materials whose name, or measured file, stands between\n"
-	         "                          quotes in FILE (pbrt, Mitsuba XML, USD ASCII, JSON); may be given\n"
-	         "                          repeatedly\n"
-	         "  -q, --quiet             say nothing on success\n"
-	         "  -h, --help              this text\n"
-	         "\n"
-	         "When a NAME is not there, nothing is written and the exit code is 1. A measured file that a\n"
-	         "scene names and the archive has not is told, the others are copied, and the exit code is 1.\n",
+			 "Copies the named materials, those that scene files name, or all. Records are copied byte\n"
+			 "for byte, but for layers that are left out.\n"
+			 "\n"
+			 "  -o, --output SCENE.bpk  the new archive; replaces an older one that is not the input\n"
+			 "      --force             also the input, or a file that is no archive\n"
+			 "      --max-error E       keep the fewest layers whose log RMSE is at most E; all where\n"
+			 "                          there is none\n"
+			 "      --scene FILE        also the materials whose name, or measured file, stands between\n"
+			 "                          quotes in FILE (pbrt, Mitsuba XML, USD ASCII, JSON); may be given\n"
+			 "                          repeatedly\n"
+			 "  -q, --quiet             say nothing on success\n"
+			 "  -h, --help              this text\n"
+			 "\n"
+			 "When a NAME is not there, nothing is written and the exit code is 1. A measured file that a\n"
+			 "scene names and the archive has not is told, the others are copied, and the exit code is 1.\n",
 };

@@ -53,9 +53,10 @@ static void material_failed(void *user, uint64_t n, const bp_error *error)
 static int synth_main(const struct command *self, int argc, char **argv)
 {
 	enum { OPTION_CLEAN = OPTION_LONG, OPTION_LATTICE, OPTION_FORCE };
-	static const struct option names[] = {
-		{"clean", no_argument, NULL, OPTION_CLEAN}, {"lattice", required_argument, NULL, OPTION_LATTICE},
-		{"force", no_argument, NULL, OPTION_FORCE}, {0}};
+	static const struct option names[] = {{"clean", no_argument, NULL, OPTION_CLEAN},
+	                                      {"lattice", required_argument, NULL, OPTION_LATTICE},
+	                                      {"force", no_argument, NULL, OPTION_FORCE},
+	                                      {0}};
 	struct synthesis synthesis = {.dims = LATTICE_MERL};
 	bool force = false;
 	int option;
@@ -74,8 +75,14 @@ static int synth_main(const struct command *self, int argc, char **argv)
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no folder" : "more than one folder");
 	synthesis.folder = argv[optind];
-	const struct folder_set set = {.folder = synthesis.folder, .suffix = "binary", .count = demo_count(), .force = force, .user = &synthesis,
-	                               .name = material_name, .write = material_write, .failed = material_failed};
+	const struct folder_set set = {.folder = synthesis.folder,
+	                               .suffix = "binary",
+	                               .count = demo_count(),
+	                               .force = force,
+	                               .user = &synthesis,
+	                               .name = material_name,
+	                               .write = material_write,
+	                               .failed = material_failed};
 	return folder_write(&set) ? EXIT_OK : EXIT_FAILED;
 }
 
@@ -84,12 +91,12 @@ const struct command command_synth = {
 	.run = synth_main,
 	.description = "write the demo materials as MERL files",
 	.usage = "Usage: brdfpack synth [--clean] [--force] DIR\n"
-	         "Writes analytic materials of every kind as MERL files (35 MB each) into DIR, which is created\n"
-	         "when it is missing: with noise and unmeasured cells like a measurement's. When a file\n"
-	         "of one of their names is there and differs, nothing is written.\n"
-	         "\n"
-	         "      --clean          without noise and faults\n"
-	         "      --force          replace files that are there\n"
-	         "      --lattice HxDxP  other extents than MERL's 90x90x180 (for tests)\n"
-	         "  -h, --help           this text\n",
+			 "Writes analytic materials of every kind as MERL files (35 MB each) into DIR, which is created\n"
+			 "when it is missing: with noise and unmeasured cells like a measurement's. When a file\n"
+			 "of one of their names is there and differs, nothing is written.\n"
+			 "\n"
+			 "      --clean          without noise and faults\n"
+			 "      --force          replace files that are there\n"
+			 "      --lattice HxDxP  other extents than MERL's 90x90x180 (for tests)\n"
+			 "  -h, --help           this text\n",
 };

@@ -61,7 +61,8 @@ static void summary_print(const struct findings *findings, uint64_t materials, u
 static int verify_main(const struct command *self, int argc, char **argv)
 {
 	enum { OPTION_DEEP = OPTION_LONG, OPTION_JSON };
-	static const struct option names[] = {{"deep", no_argument, NULL, OPTION_DEEP}, {"json", no_argument, NULL, OPTION_JSON}, {0}};
+	static const struct option names[] = {
+		{"deep", no_argument, NULL, OPTION_DEEP}, {"json", no_argument, NULL, OPTION_JSON}, {0}};
 	struct findings findings = {0};
 	bp_archive *archive = NULL;
 	bool deep = false;
@@ -100,9 +101,9 @@ const struct command command_verify = {
 	.run = verify_main,
 	.description = "check every byte of an archive",
 	.usage = "Usage: brdfpack verify [--deep] [--json] ARCHIVE\n"
-	         "Reads the whole archive and checks all checksums, the index and the order of the names.\n"
-	         "\n"
-	         "      --deep   also decodes every layer of every material and checks its values\n"
-	         "      --json   one JSON object per problem, then a summary object\n"
-	         "  -h, --help   this text\n",
+			 "Reads the whole archive and checks all checksums, the index and the order of the names.\n"
+			 "\n"
+			 "      --deep   also decodes every layer of every material and checks its values\n"
+			 "      --json   one JSON object per problem, then a summary object\n"
+			 "  -h, --help   this text\n",
 };

@@ -40,27 +40,27 @@ static bp_status decoded_load(const struct compare_job *job, const struct compar
 	return status;
 }
 
-static bool figure_alike(double recorded, double measured)
-{
-	return fabs(recorded - measured) <= 1e-9 * fabs(measured);
-}
+static bool figure_alike(double recorded, double measured) { return fabs(recorded - measured) <= 1e-9 * fabs(measured); }
 
 static bp_status figures_confirm(const struct record_head *head, uint32_t layer, const struct fidelity *measured, bp_error *error)
 {
 	const struct fidelity *recorded = &head->layers[layer].fidelity;
-	if (figure_alike(recorded->log_rmse, measured->log_rmse) && figure_alike(recorded->cube_root_rmse, measured->cube_root_rmse) &&
+	if (figure_alike(recorded->log_rmse, measured->log_rmse) &&
+	    figure_alike(recorded->cube_root_rmse, measured->cube_root_rmse) &&
 	    figure_alike(recorded->largest_relative, measured->largest_relative) &&
 	    fabs(recorded->seen_log_rmse - measured->seen_log_rmse) <= 1e-6 * measured->seen_log_rmse /* a float in the record */)
 		return BP_OK;
-	return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET,
-	                 "layer %u: the record tells errors of %.9g, %.9g, %.9g (log, cube-root, largest relative); measured: %.9g, %.9g, %.9g",
-	                 layer, recorded->log_rmse, recorded->cube_root_rmse, recorded->largest_relative, measured->log_rmse,
-	                 measured->cube_root_rmse, measured->largest_relative);
+	return error_set(
+		error, BP_ERROR_CORRUPT, BP_NO_OFFSET,
+		"layer %u: the record tells errors of %.9g, %.9g, %.9g (log, cube-root, largest relative); measured: %.9g, %.9g, %.9g",
+		layer, recorded->log_rmse, recorded->cube_root_rmse, recorded->largest_relative, measured->log_rmse,
+		measured->cube_root_rmse, measured->largest_relative);
 }
 
 /* The layers below the last, of which `last` was measured. Uses up the table. */
 static bp_status layers_confirm(const struct compare_job *job, const struct compare_item *item, const struct record_head *head,
-                                const struct lattice *lattice, const struct fidelity *last, struct expansion *table, bp_error *error)
+                                const struct lattice *lattice, const struct fidelity *last, struct expansion *table,
+                                bp_error *error)
 {
 	bp_status status = figures_confirm(head, head->layer_count - 1, last, error);
 	for (uint32_t l = 0; status == BP_OK && l + 1 < head->layer_count; l++) {
@@ -91,7 +91,8 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 
 	(void)fd;
 	sha256_start(&sha);
-	status = source_item_read(item->source, &compare->cursor, &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, &lattice, &reason);
+	status = source_item_read(item->source, &compare->cursor,
+	                          &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, &lattice, &reason);
 	if (status != BP_OK) {
 		error_set(error, status, BP_NO_OFFSET, "%s: %s", item->source->path, reason.message);
 		goto out;

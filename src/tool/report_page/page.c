@@ -51,7 +51,8 @@ static bp_status items_read(struct making *making, bp_error *error)
 	if (!making->items || !page->outcomes)
 		return error_memory(error, page->count * sizeof *making->items);
 	for (size_t n = 0; n < page->count; n++)
-		if (selection_entry(page->selection, n, &making->items[n].entry, error) != BP_OK) { /* the index is damaged: those before are shown */
+		if (selection_entry(page->selection, n, &making->items[n].entry, error) !=
+		    BP_OK) { /* the index is damaged: those before are shown */
 			report_error(page->selection->path, NULL, error);
 			page->selection->incomplete = true;
 			page->count = n;
@@ -107,7 +108,8 @@ static bp_status file_read(const char *path, size_t most, char **out, size_t *ou
 	char *text = bytes <= most ? malloc(bytes + 1) : NULL;
 	bp_status status = BP_OK;
 	if (bytes > most)
-		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: %zu bytes do not fit into a page; serve it beside the page instead", path, bytes);
+		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+		                   "%s: %zu bytes do not fit into a page; serve it beside the page instead", path, bytes);
 	else if (!text)
 		status = error_memory(error, bytes);
 	else if (fread(text, 1, bytes, file) != bytes)
@@ -195,11 +197,12 @@ static bp_status materials_draw(struct making *making, bp_error *error)
 	struct page *page = &making->page;
 	const struct page_options *options = page->options;
 	struct workers *workers;
-	making->job = (struct page_job){.archive = page->selection->archive,
-	                                .items = making->items,
-	                                .details = page->details,
-	                                .measured = options->measured != NULL,
-	                                .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
+	making->job =
+		(struct page_job){.archive = page->selection->archive,
+	                      .items = making->items,
+	                      .details = page->details,
+	                      .measured = options->measured != NULL,
+	                      .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
 	struct workers_options pool = {.count = page->count < options->workers ? (unsigned)page->count : options->workers,
 	                               .work = page_work,
 	                               .work_user = &making->job,
@@ -314,7 +317,8 @@ int page_run(const struct page_options *options, struct selection *selection)
 	bp_status status = items_read(&making, &error);
 	if (status == BP_OK && options->embed && !page->viewer)
 		status = error_set(&error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                   "--embed: the viewer is not there, so nothing could read the archive; `make viewer` builds it (Debian package emscripten)");
+		                   "--embed: the viewer is not there, so nothing could read the archive; `make viewer` builds it (Debian "
+		                   "package emscripten)");
 	if (status == BP_OK)
 		status = sources_find(&making, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */

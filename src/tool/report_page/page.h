@@ -21,7 +21,7 @@ struct page_options {
 	unsigned lightings;   /* bit 1 << lighting */
 	unsigned workers;
 	bool quiet;
-	bool embed;           /* the archive's bytes stand in the page */
+	bool embed; /* the archive's bytes stand in the page */
 };
 
 /* Beyond so many materials the page is a contact sheet only: it stays readable, and under 50 MB for 10,000. */

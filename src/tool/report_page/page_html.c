@@ -38,7 +38,8 @@ void html_base64(FILE *out, const uint8_t *bytes, size_t count)
 	static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 	for (size_t n = 0; n < count; n += 3) {
 		const size_t left = count - n;
-		const uint32_t triple = (uint32_t)bytes[n] << 16 | (left > 1 ? (uint32_t)bytes[n + 1] << 8 : 0) | (left > 2 ? bytes[n + 2] : 0);
+		const uint32_t triple =
+			(uint32_t)bytes[n] << 16 | (left > 1 ? (uint32_t)bytes[n + 1] << 8 : 0) | (left > 2 ? bytes[n + 2] : 0);
 		const char four[4] = {DIGITS[triple >> 18], DIGITS[triple >> 12 & 63], left > 1 ? DIGITS[triple >> 6 & 63] : '=',
 		                      left > 2 ? DIGITS[triple & 63] : '='};
 		fwrite(four, 1, sizeof four, out);

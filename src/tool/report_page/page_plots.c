@@ -39,17 +39,19 @@ static void polar_grid(FILE *out, int top)
 	fprintf(out, "<path class=axis d=\"M%d %d H%d\"/>", -RADIUS, 0, RADIUS);
 	for (int decade = 1; decade <= DECADES; decade++) {
 		double r = (double)RADIUS * decade / DECADES;
-		fprintf(out, "<path class=grid d=\"M%.1f 0 A%.1f %.1f 0 0 1 %.1f 0\"/><text class=tick x=%.1f y=12>1e%d</text>", -r, r, r, r, r,
-		        top - DECADES + decade);
+		fprintf(out, "<path class=grid d=\"M%.1f 0 A%.1f %.1f 0 0 1 %.1f 0\"/><text class=tick x=%.1f y=12>1e%d</text>", -r, r, r,
+		        r, r, top - DECADES + decade);
 	}
 	for (int d = -60; d <= 60; d += 30)
-		fprintf(out, "<path class=grid d=\"M0 0 L%.1f %.1f\"/><text class=tick x=%.1f y=%.1f>%d°</text>", RADIUS * sin(d * DEGREE),
-		        -RADIUS * cos(d * DEGREE), (RADIUS + 12) * sin(d * DEGREE), -(RADIUS + 6) * cos(d * DEGREE), d);
+		fprintf(out, "<path class=grid d=\"M0 0 L%.1f %.1f\"/><text class=tick x=%.1f y=%.1f>%d°</text>",
+		        RADIUS * sin(d * DEGREE), -RADIUS * cos(d * DEGREE), (RADIUS + 12) * sin(d * DEGREE),
+		        -(RADIUS + 6) * cos(d * DEGREE), d);
 }
 
 void plot_polar(FILE *out, const struct table *table)
 {
-	double degrees[INCIDENT_COUNT][SAMPLES_MAX], value[INCIDENT_COUNT][SAMPLES_MAX], peak[INCIDENT_COUNT] = {0}, peak_at[INCIDENT_COUNT] = {0};
+	double degrees[INCIDENT_COUNT][SAMPLES_MAX], value[INCIDENT_COUNT][SAMPLES_MAX], peak[INCIDENT_COUNT] = {0},
+																					 peak_at[INCIDENT_COUNT] = {0};
 	int count[INCIDENT_COUNT];
 	double largest = 1e-30;
 	for (int i = 0; i < INCIDENT_COUNT; i++) {
@@ -64,7 +66,8 @@ void plot_polar(FILE *out, const struct table *table)
 		largest = fmax(largest, peak[i]);
 	}
 	const int top = (int)ceil(log10(largest));
-	fputs("<figure class=plot><svg viewBox=\"-175 -170 350 190\" role=img aria-label=\"Polar plot of f cos theta_o, logarithmic.", out);
+	fputs("<figure class=plot><svg viewBox=\"-175 -170 350 190\" role=img aria-label=\"Polar plot of f cos theta_o, logarithmic.",
+	      out);
 	for (int i = 0; i < INCIDENT_COUNT; i++)
 		fprintf(out, " Light from %d degrees: largest %.3g per steradian at %.1f degrees.", INCIDENT[i], peak[i], peak_at[i]);
 	fputs("\">", out);
@@ -79,8 +82,10 @@ void plot_polar(FILE *out, const struct table *table)
 	}
 	fputs("</svg><figcaption>f cos θ<sub>o</sub> in 1/sr, mean of the channels; light from θ<sub>i</sub> =", out);
 	for (int i = 0; i < INCIDENT_COUNT; i++)
-		fprintf(out, " <span class=key><svg viewBox=\"0 0 24 8\" aria-hidden=true><path class=\"line l%d\" d=\"M0 4H24\"/></svg>%d°</span>", i,
-		        INCIDENT[i]);
+		fprintf(out,
+		        " <span class=key><svg viewBox=\"0 0 24 8\" aria-hidden=true><path class=\"line l%d\" d=\"M0 "
+		        "4H24\"/></svg>%d°</span>",
+		        i, INCIDENT[i]);
 	fputs("</figcaption></figure>", out);
 }
 
@@ -90,12 +95,12 @@ void plot_albedo(FILE *out, const struct energy *energy)
 	const double top = fmax(1, ceil(energy->largest * 5) / 5), width = 300, height = 150;
 	fputs("<figure class=plot><svg viewBox=\"-30 -10 345 185\" role=img aria-label=\"Directional albedo.", out);
 	for (int c = 0; c < 3; c++)
-		fprintf(out, " %s: %.3f at 0 degrees, %.3f at 60, %.3f at 85.", CHANNEL[c], energy->albedo[0][c], energy->albedo[60 / ENERGY_STEP_DEGREES][c],
-		        energy->albedo[ENERGY_DIRECTIONS - 1][c]);
+		fprintf(out, " %s: %.3f at 0 degrees, %.3f at 60, %.3f at 85.", CHANNEL[c], energy->albedo[0][c],
+		        energy->albedo[60 / ENERGY_STEP_DEGREES][c], energy->albedo[ENERGY_DIRECTIONS - 1][c]);
 	fputs("\">", out);
 	for (int n = 0; n <= 4; n++)
-		fprintf(out, "<path class=grid d=\"M0 %.1fH%.0f\"/><text class=\"tick end\" x=-4 y=%.1f>%.2f</text>", height * (1 - n / 4.0), width,
-		        height * (1 - n / 4.0) + 3, top * n / 4);
+		fprintf(out, "<path class=grid d=\"M0 %.1fH%.0f\"/><text class=\"tick end\" x=-4 y=%.1f>%.2f</text>",
+		        height * (1 - n / 4.0), width, height * (1 - n / 4.0) + 3, top * n / 4);
 	if (top > 1)
 		fprintf(out, "<path class=limit d=\"M0 %.1fH%.0f\"/>", height * (1 - 1 / top), width);
 	for (int d = 0; d <= 90; d += 30)
@@ -103,12 +108,16 @@ void plot_albedo(FILE *out, const struct energy *energy)
 	for (int c = 0; c < 3; c++) {
 		fprintf(out, "<path class=\"line c%d\" d=\"", c);
 		for (int n = 0; n < ENERGY_DIRECTIONS; n++)
-			fprintf(out, "%s%.1f %.1f", n ? "L" : "M", width * n * ENERGY_STEP_DEGREES / 90, height * (1 - energy->albedo[n][c] / top));
+			fprintf(out, "%s%.1f %.1f", n ? "L" : "M", width * n * ENERGY_STEP_DEGREES / 90,
+			        height * (1 - energy->albedo[n][c] / top));
 		fputs("\"/>", out);
 	}
 	fputs("</svg><figcaption>directional albedo over θ<sub>o</sub>:", out);
 	for (int c = 0; c < 3; c++)
-		fprintf(out, " <span class=key><svg viewBox=\"0 0 24 8\" aria-hidden=true><path class=\"line c%d\" d=\"M0 4H24\"/></svg>%s</span>", c, CHANNEL[c]);
+		fprintf(
+			out,
+			" <span class=key><svg viewBox=\"0 0 24 8\" aria-hidden=true><path class=\"line c%d\" d=\"M0 4H24\"/></svg>%s</span>",
+			c, CHANNEL[c]);
 	fputs("</figcaption></figure>", out);
 }
 
@@ -136,10 +145,7 @@ static struct axis axis_over(double least, double most, int *first, int *last)
 	return (struct axis){log10(axis_step(*first)), log10(axis_step(*last))};
 }
 
-static double axis_at(struct axis axis, double value)
-{
-	return (log10(value) - axis.low) / (axis.high - axis.low);
-}
+static double axis_at(struct axis axis, double value) { return (log10(value) - axis.low) / (axis.high - axis.low); }
 
 void plot_ladders(FILE *out, const struct plot_ladder *ladders, size_t count)
 {
@@ -158,19 +164,25 @@ void plot_ladders(FILE *out, const struct plot_ladder *ladders, size_t count)
 		return;
 	error_least = fmax(error_least, error_most * 1e-6);
 	int x_first, x_last, y_first, y_last;
-	const struct axis x = axis_over(bytes_least, bytes_most, &x_first, &x_last), y = axis_over(error_least, error_most, &y_first, &y_last);
-	fprintf(out, "<figure class=plot><svg class=wide viewBox=\"-50 -10 700 345\" role=img aria-label=\"Bytes against log RMSE of %zu materials, both "
-	             "logarithmic: %.0f to %.0f bytes, log RMSE %.3g to %.3g. The figures are in the table of each material.\">",
+	const struct axis x = axis_over(bytes_least, bytes_most, &x_first, &x_last),
+					  y = axis_over(error_least, error_most, &y_first, &y_last);
+	fprintf(out,
+	        "<figure class=plot><svg class=wide viewBox=\"-50 -10 700 345\" role=img aria-label=\"Bytes against log RMSE of %zu "
+	        "materials, both "
+	        "logarithmic: %.0f to %.0f bytes, log RMSE %.3g to %.3g. The figures are in the table of each material.\">",
 	        count, bytes_least, bytes_most, error_least, error_most);
 	for (int n = x_first; n <= x_last; n++) {
 		const double at = width * axis_at(x, axis_step(n));
-		fprintf(out, "<path class=grid d=\"M%.1f 0V%.0f\"/><text class=tick x=%.1f y=%.0f>%.0f</text>", at, height, at, height + 14, axis_step(n));
+		fprintf(out, "<path class=grid d=\"M%.1f 0V%.0f\"/><text class=tick x=%.1f y=%.0f>%.0f</text>", at, height, at,
+		        height + 14, axis_step(n));
 	}
 	for (int n = y_first; n <= y_last; n++) {
 		const double at = height * (1 - axis_at(y, axis_step(n)));
-		fprintf(out, "<path class=grid d=\"M0 %.1fH%.0f\"/><text class=\"tick end\" x=-6 y=%.1f>%g</text>", at, width, at + 3, axis_step(n));
+		fprintf(out, "<path class=grid d=\"M0 %.1fH%.0f\"/><text class=\"tick end\" x=-6 y=%.1f>%g</text>", at, width, at + 3,
+		        axis_step(n));
 	}
-	fprintf(out, "<text class=tick x=%.0f y=%.0f>bytes</text><text class=\"tick start\" x=4 y=10>log RMSE</text>", width / 2, height + 30);
+	fprintf(out, "<text class=tick x=%.0f y=%.0f>bytes</text><text class=\"tick start\" x=4 y=10>log RMSE</text>", width / 2,
+	        height + 30);
 	for (size_t m = 0; m < count; m++) {
 		fputs("<g class=ladder><title>", out);
 		html_text(out, ladders[m].name);

@@ -21,7 +21,9 @@ void page_head_write(FILE *out, const struct page *page)
 {
 	const char *leaf = path_leaf(page->selection->path);
 	const uint64_t all = bp_archive_count(page->selection->archive);
-	fputs(PAGE_MARK "<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>", out);
+	fputs(PAGE_MARK
+	      "<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>",
+	      out);
 	html_text(out, leaf);
 	fputs("</title>\n<style>\n", out);
 	fputs(PAGE_CSS, out);
@@ -34,15 +36,18 @@ void page_head_write(FILE *out, const struct page *page)
 		fprintf(out, ", %zu of them here", page->count);
 	fprintf(out, ", %llu bytes. ", (unsigned long long)page->archive_bytes);
 	if (page->problem_count)
-		fprintf(out, "<a class=warning href=\"#verify\">verify found %zu problem%s.</a> ", page->problem_count, page->problem_count == 1 ? "" : "s");
+		fprintf(out, "<a class=warning href=\"#verify\">verify found %zu problem%s.</a> ", page->problem_count,
+		        page->problem_count == 1 ? "" : "s");
 	if (page->failed)
-		fprintf(out, "<strong class=warning>%zu material%s could not be decoded.</strong> ", page->failed, page->failed == 1 ? "" : "s");
+		fprintf(out, "<strong class=warning>%zu material%s could not be decoded.</strong> ", page->failed,
+		        page->failed == 1 ? "" : "s");
 	fputs("Made by brdfpack " BP_VERSION ".</p></header>\n", out);
 }
 
 static void controls_write(FILE *out)
 {
-	fputs("<form id=controls class=controls hidden role=search><label>name contains <input type=search id=filter autocomplete=off></label>"
+	fputs("<form id=controls class=controls hidden role=search><label>name contains <input type=search id=filter "
+	      "autocomplete=off></label>"
 	      " <label>sort by <select id=sort><option value=name>name<option value=bytes>bytes<option value=error>error (log RMSE)"
 	      "<option value=albedo>largest albedo<option value=colour>colour</select></label>"
 	      " <label><input type=checkbox id=down> largest first</label> <span id=shown role=status></span></form>\n",
@@ -59,7 +64,9 @@ void page_sheet_write(FILE *out, const struct page *page)
 	controls_write(out);
 	fputs("<p class=note>Under each sphere: the record's bytes, and its log RMSE against the measured table.", out);
 	if (!page->details)
-		fputs(" With so many materials this page shows no more of each; <code>brdfpack report ARCHIVE NAME…</code> shows all of those that are named.", out);
+		fputs(" With so many materials this page shows no more of each; <code>brdfpack report ARCHIVE NAME…</code> shows all of "
+		      "those that are named.",
+		      out);
 	fputs("</p>\n<ul class=sheet>\n", out);
 	for (size_t n = 0; n < page->count; n++) {
 		const struct page_outcome *outcome = &page->outcomes[n];
@@ -96,8 +103,10 @@ static void worst_write(FILE *out, const struct page *page, const struct page_ou
 	qsort(order, count, sizeof *order, worse_first);
 	for (size_t n = 0; n < count; n++)
 		compared |= order[n]->result.measured;
-	fprintf(out, "<table><caption>The %zu with the largest error</caption><thead><tr><th scope=col>material<th scope=col>bytes<th scope=col>log RMSE"
-	             "<th scope=col>largest albedo",
+	fprintf(out,
+	        "<table><caption>The %zu with the largest error</caption><thead><tr><th scope=col>material<th scope=col>bytes<th "
+	        "scope=col>log RMSE"
+	        "<th scope=col>largest albedo",
 	        count < WORST_COUNT ? count : WORST_COUNT);
 	for (int l = 0; compared && l < LIGHTING_COUNT; l++)
 		if (page->options->lightings >> l & 1)
@@ -110,10 +119,12 @@ static void worst_write(FILE *out, const struct page *page, const struct page_ou
 		if (page->details)
 			fprintf(out, "<a href=\"#m%llu\">", (unsigned long long)item->entry.ordinal);
 		html_name(out, item->entry.name);
-		fprintf(out, "%s<td>%u<td>%.5f<td>%.3f", page->details ? "</a>" : "", outcome->result.record_bytes, last_error(outcome), outcome->result.albedo);
+		fprintf(out, "%s<td>%u<td>%.5f<td>%.3f", page->details ? "</a>" : "", outcome->result.record_bytes, last_error(outcome),
+		        outcome->result.albedo);
 		for (int l = 0; compared && l < LIGHTING_COUNT; l++)
 			if (page->options->lightings >> l & 1)
-				outcome->result.compared[l] ? fprintf(out, "<td>%.2f", outcome->result.psnr[l]) : fprintf(out, "<td>not compared");
+				outcome->result.compared[l] ? fprintf(out, "<td>%.2f", outcome->result.psnr[l])
+											: fprintf(out, "<td>not compared");
 		fputs("</tr>", out);
 	}
 	fputs("</tbody></table>\n", out);
@@ -139,8 +150,10 @@ void page_archive_write(FILE *out, const struct page *page)
 	}
 	free(order);
 	free(ladders);
-	fprintf(out, "<section id=verify aria-labelledby=verify-h><h3 id=verify-h>What verify said</h3><p>All checksums, the index and the order of the names "
-	             "were checked, and %zu of %zu materials decoded for this page: %s</p>",
+	fprintf(out,
+	        "<section id=verify aria-labelledby=verify-h><h3 id=verify-h>What verify said</h3><p>All checksums, the index and "
+	        "the order of the names "
+	        "were checked, and %zu of %zu materials decoded for this page: %s</p>",
 	        page->count - page->failed, page->count, page->problem_count || page->failed ? "" : "no problem found.");
 	if (page->problem_count) {
 		fputs("<ul>", out);

@@ -26,7 +26,7 @@ struct page {
 	uint64_t archive_bytes;    /* all of the file */
 	struct byte_buffer verify; /* what verify said: HTML list items */
 	size_t problem_count;
-	char *viewer;              /* the viewer's part of the page, or NULL: it was not built */
+	char *viewer; /* the viewer's part of the page, or NULL: it was not built */
 	size_t viewer_bytes;
 };
 

@@ -17,13 +17,13 @@ struct subject {
 	struct record_head head;
 	struct model *model;
 	struct expansion table;
-	uint8_t *valid;              /* cells that count, as in a picture of it alone */
-	struct lattice lattice;      /* the measured file; alloc'ed only where there is one */
+	uint8_t *valid;         /* cells that count, as in a picture of it alone */
+	struct lattice lattice; /* the measured file; alloc'ed only where there is one */
 	bool measured;
 	struct comparison comparison;
-	struct energy energy;        /* of the decoded table */
+	struct energy energy;                   /* of the decoded table */
 	struct picture spheres[LIGHTING_COUNT]; /* decoded alone, or measured | decoded | difference */
-	char missing[640];           /* why there is no comparison, though one was asked for */
+	char missing[640];                      /* why there is no comparison, though one was asked for */
 };
 
 static void subject_free(struct subject *subject)
@@ -71,7 +71,8 @@ static bp_status decoded_draw(struct page_job *job, struct subject *subject, bp_
 	for (int l = 0; status == BP_OK && l < LIGHTING_COUNT; l++) {
 		if (!plans->plans[l])
 			continue;
-		sphere_plan_render(plans->plans[l], (const struct lookup_table *[]){&lookup}, 1, (struct sphere_image *[]){&plans->estimate});
+		sphere_plan_render(plans->plans[l], (const struct lookup_table *[]){&lookup}, 1,
+		                   (struct sphere_image *[]){&plans->estimate});
 		status = image_exposure(&plans->estimate, &exposure, error);
 		if (status == BP_OK)
 			status = picture_alloc(plans->size, plans->size, &subject->spheres[l], error);
@@ -86,9 +87,11 @@ static bp_status decoded_draw(struct page_job *job, struct subject *subject, bp_
 static bp_status measured_draw(struct page_job *job, struct subject *subject, bp_error *error)
 {
 	bp_error reason;
-	bp_status status = source_item_read(subject->item->source, &job->cursor, &(struct merl_reading){.any_dims = true}, &subject->lattice, &reason);
+	bp_status status = source_item_read(subject->item->source, &job->cursor, &(struct merl_reading){.any_dims = true},
+	                                    &subject->lattice, &reason);
 	if (status == BP_OK)
-		status = comparison_measure(&job->plans, &subject->lattice, &subject->table, &subject->comparison, subject->spheres, &reason);
+		status =
+			comparison_measure(&job->plans, &subject->lattice, &subject->table, &subject->comparison, subject->spheres, &reason);
 	subject->measured = status == BP_OK;
 	subject->energy = subject->comparison.decoded;
 	if (status == BP_OK)
@@ -131,7 +134,9 @@ static double picture_hue(const struct picture *picture)
 	const double top = fmax(mean[0], fmax(mean[1], mean[2])), low = fmin(mean[0], fmin(mean[1], mean[2])), range = top - low;
 	if (range <= 0.08 * top)
 		return 720 - all / (double)(pixels * 3);
-	const double sixth = top == mean[0] ? (mean[1] - mean[2]) / range : top == mean[1] ? 2 + (mean[2] - mean[0]) / range : 4 + (mean[0] - mean[1]) / range;
+	const double sixth = top == mean[0]   ? (mean[1] - mean[2]) / range
+	                     : top == mean[1] ? 2 + (mean[2] - mean[0]) / range
+	                                      : 4 + (mean[0] - mean[1]) / range;
 	return fmod(60 * sixth + 360, 360);
 }
 
@@ -146,13 +151,14 @@ static bp_status sheet_write(FILE *out, const struct page_job *job, const struct
 		return status;
 	fprintf(out, "<li class=tile data-name=\"");
 	html_text(out, name);
-	fprintf(out, "\" data-index=%llu data-bytes=%u data-error=%.6g data-albedo=%.4f data-colour=%.2f><a", (unsigned long long)subject->item->entry.ordinal,
-	        subject->head.record_bytes, fidelity->log_rmse, subject->energy.largest, picture_hue(&thumbnail));
+	fprintf(out, "\" data-index=%llu data-bytes=%u data-error=%.6g data-albedo=%.4f data-colour=%.2f><a",
+	        (unsigned long long)subject->item->entry.ordinal, subject->head.record_bytes, fidelity->log_rmse,
+	        subject->energy.largest, picture_hue(&thumbnail));
 	if (job->details)
 		fprintf(out, " href=\"#m%llu\"", (unsigned long long)subject->item->entry.ordinal);
 	fputs(">", out);
-	snprintf(alt, sizeof alt, "sphere of %s: %u bytes, log RMSE %.3g, largest albedo %.2f", name, subject->head.record_bytes, fidelity->log_rmse,
-	         subject->energy.largest);
+	snprintf(alt, sizeof alt, "sphere of %s: %u bytes, log RMSE %.3g, largest albedo %.2f", name, subject->head.record_bytes,
+	         fidelity->log_rmse, subject->energy.largest);
 	status = html_picture(out, &thumbnail, "ball", alt, error);
 	picture_free(&thumbnail);
 	fputs("<span class=name>", out);
@@ -172,7 +178,9 @@ static bp_status spheres_write(FILE *out, const struct subject *subject, bp_erro
 			continue;
 		fprintf(out, "<figure class=light-%s>", lighting_name((enum lighting)l));
 		if (subject->measured)
-			snprintf(alt, sizeof alt, "%s under %s: measured, decoded, and their difference times ten; PSNR %.2f dB, mean colour difference %.3g dE ITP",
+			snprintf(alt, sizeof alt,
+			         "%s under %s: measured, decoded, and their difference times ten; PSNR %.2f dB, mean colour difference %.3g "
+			         "dE ITP",
 			         subject->head.name, lighting_label(l), subject->comparison.psnr[l].real, subject->comparison.itp[l]);
 		else
 			snprintf(alt, sizeof alt, "sphere of %s under %s", subject->head.name, lighting_label(l));
@@ -214,12 +222,15 @@ static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t 
 		for (size_t n = 0; n < pixels; n++) {
 			const uint32_t i = (uint32_t)(n % width), j = height - 1 - (uint32_t)(n / width);
 			for (int c = 0; c < 3; c++)
-				picture.rgb[3 * n + (size_t)c] = (uint8_t)(255 * image_srgb((double)table->rgb[c][lattice_index(table->dims, i, j, k)] / white) + 0.5);
+				picture.rgb[3 * n + (size_t)c] =
+					(uint8_t)(255 * image_srgb((double)table->rgb[c][lattice_index(table->dims, i, j, k)] / white) + 0.5);
 		}
-		snprintf(alt, sizeof alt, "slice of %s at phi_d %.1f degrees; white is %.3g per steradian", subject->head.name, degrees, white * table->unit);
+		snprintf(alt, sizeof alt, "slice of %s at phi_d %.1f degrees; white is %.3g per steradian", subject->head.name, degrees,
+		         white * table->unit);
 		fputs("<figure>", out);
 		status = html_picture(out, &picture, "slice", alt, error);
-		fprintf(out, "<figcaption>θ<sub>h</sub> → (square root), θ<sub>d</sub> ↑, at φ<sub>d</sub> = %.1f°</figcaption></figure>", degrees);
+		fprintf(out, "<figcaption>θ<sub>h</sub> → (square root), θ<sub>d</sub> ↑, at φ<sub>d</sub> = %.1f°</figcaption></figure>",
+		        degrees);
 	}
 	picture_free(&picture);
 	free(mean);
@@ -229,12 +240,14 @@ static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t 
 static void layers_write(FILE *out, const struct subject *subject)
 {
 	const struct record_head *head = &subject->head;
-	fputs("<table><caption>Layers: what loading up to each costs, and the error that is left</caption><thead><tr><th scope=col>layer<th scope=col>bytes"
+	fputs("<table><caption>Layers: what loading up to each costs, and the error that is left</caption><thead><tr><th "
+	      "scope=col>layer<th scope=col>bytes"
 	      "<th scope=col>log RMSE<th scope=col>cube-root RMSE<th scope=col>largest relative error</tr></thead><tbody>",
 	      out);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.3g</tr>", l + 1, head->layers[l].bytes, head->layers[l].fidelity.log_rmse,
-		        head->layers[l].fidelity.cube_root_rmse, head->layers[l].fidelity.largest_relative);
+		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.3g</tr>", l + 1, head->layers[l].bytes,
+		        head->layers[l].fidelity.log_rmse, head->layers[l].fidelity.cube_root_rmse,
+		        head->layers[l].fidelity.largest_relative);
 	fputs("</tbody></table>", out);
 }
 
@@ -249,9 +262,11 @@ static void swatch_write(FILE *out, const double rgb[3], double white)
 static void colours_write(FILE *out, const struct subject *subject)
 {
 	const struct colour_fit *fit = subject->head.colour;
-	const double diffuse[3] = {fit[0].diffuse, fit[1].diffuse, fit[2].diffuse}, specular[3] = {fit[0].specular, fit[1].specular, fit[2].specular};
+	const double diffuse[3] = {fit[0].diffuse, fit[1].diffuse, fit[2].diffuse},
+				 specular[3] = {fit[0].specular, fit[1].specular, fit[2].specular};
 	const double most = fmax(1e-30, fmax(specular[0], fmax(specular[1], specular[2])));
-	fputs("<table><caption>Parameters of the robust regression</caption><thead><tr><td><th scope=col>red<th scope=col>green<th scope=col>blue"
+	fputs("<table><caption>Parameters of the robust regression</caption><thead><tr><td><th scope=col>red<th scope=col>green<th "
+	      "scope=col>blue"
 	      "<th scope=col>as colour</tr></thead><tbody><tr><th scope=row>diffuse (1/sr)",
 	      out);
 	for (int c = 0; c < 3; c++)
@@ -270,19 +285,23 @@ static void source_write(FILE *out, const struct subject *subject)
 {
 	const struct record_head *head = &subject->head;
 	fprintf(out,
-	        "<table class=facts><caption>The record and its source</caption><tbody><tr><th scope=row>profile<td>%s, codec version %u<tr><th scope=row>lattice"
+	        "<table class=facts><caption>The record and its source</caption><tbody><tr><th scope=row>profile<td>%s, codec "
+	        "version %u<tr><th scope=row>lattice"
 	        "<td>%u × %u × %u cells<tr><th scope=row>record<td>%u bytes, of which %u are its head<tr><th scope=row>made with<td>",
-	        profile_name(head->profile), head->codec_version, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->record_bytes,
-	        head->head_bytes);
+	        profile_name(head->profile), head->codec_version, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d,
+	        head->record_bytes, head->head_bytes);
 	if (head->options.max_error > 0)
 		fprintf(out, "a log RMSE of at most %g", head->options.max_error);
 	else
 		fprintf(out, "a budget of %u bytes", head->options.budget_bytes);
-	fprintf(out, ", effort %d<tr><th scope=row>measured file<td>%llu bytes, %llu cells not finite<tr><th scope=row>its SHA-256<td><code>", head->options.effort,
-	        (unsigned long long)head->source.bytes, (unsigned long long)head->source.nonfinite_count);
+	fprintf(
+		out,
+		", effort %d<tr><th scope=row>measured file<td>%llu bytes, %llu cells not finite<tr><th scope=row>its SHA-256<td><code>",
+		head->options.effort, (unsigned long long)head->source.bytes, (unsigned long long)head->source.nonfinite_count);
 	for (int n = 0; n < SHA256_BYTES; n++)
 		fprintf(out, "%02x%s", head->source.sha256[n], n % 8 == 7 ? "<wbr>" : "");
-	fprintf(out, "</code><tr><th scope=row>measured down to<td>%.2f° below the horizon</tbody></table>", -asin(head->horizon_limit) * 180 / M_PI);
+	fprintf(out, "</code><tr><th scope=row>measured down to<td>%.2f° below the horizon</tbody></table>",
+	        -asin(head->horizon_limit) * 180 / M_PI);
 }
 
 static bp_status details_write(FILE *out, const struct subject *subject, bp_error *error)

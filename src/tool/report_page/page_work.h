@@ -22,7 +22,7 @@ struct page_result {
 	double albedo;                  /* the largest directional one */
 	bool measured;                  /* compared with its file */
 	bool compared[LIGHTING_COUNT];
-	double psnr[LIGHTING_COUNT];    /* float, where compared */
+	double psnr[LIGHTING_COUNT]; /* float, where compared */
 	uint32_t sheet_bytes, details_bytes;
 };
 
@@ -30,7 +30,7 @@ struct page_result {
 struct page_job {
 	const struct bp_archive *archive;
 	const struct page_item *items;
-	bool details, measured; /* measured files were asked for */
+	bool details, measured;        /* measured files were asked for */
 	struct comparison_plans plans; /* a worker's own from the fork on */
 	struct source_cursor cursor;
 };
