@@ -88,7 +88,7 @@ const char *viewer_archive_info(const struct bp_archive *archive, double index)
 	                         (unsigned long long)entry.offset, head.record_bytes);
 	for (uint32_t l = 0; l < head.layer_count; l++)
 		used += (size_t)snprintf(text + used, sizeof text - used, "%s{\"bytes\":%u,\"error\":%.6g}", l ? "," : "",
-		                         head.layers[l].bytes, head.layers[l].fidelity.log_rmse);
+		                         head.layers[l].bytes, head.layers[l].fidelity.seen_log_rmse);
 	snprintf(text + used, sizeof text - used, "]}");
 	return text;
 }

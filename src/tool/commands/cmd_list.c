@@ -37,7 +37,7 @@ static void row_print(const struct record_head *head, int width)
 {
 	text_print(head->name, width);
 	printf(" %9" PRIu32 "  %-8s %6" PRIu32 "  %8.5f ", head->record_bytes, profile_name(head->profile), head->layer_count,
-	       head_fidelity(head)->log_rmse);
+	       head_fidelity(head)->seen_log_rmse);
 	for (int c = 0; c < 3; c++)
 		number_print(head->colour[c].diffuse);
 	putchar(' ');

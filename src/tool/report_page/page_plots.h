@@ -18,7 +18,7 @@ void plot_polar(FILE *out, const struct table *table);
 /* Directional albedo of the three channels over theta_o, 0 to 85 degrees. */
 void plot_albedo(FILE *out, const struct energy *energy);
 
-/* One material's line in the plot of all: bytes and log RMSE of its layers. */
+/* One material's line in the plot of all: bytes of its layers and their log RMSE over what can be seen. */
 struct plot_ladder {
 	const char *name;
 	uint32_t count;

@@ -62,7 +62,9 @@ void page_sheet_write(FILE *out, const struct page *page)
 		return;
 	}
 	controls_write(out);
-	fputs("<p class=note>Under each sphere: the record's bytes, and its log RMSE against the measured table.", out);
+	fputs("<p class=note>Under each sphere: the record's bytes, and its log RMSE against the measured table, over the cells that "
+	      "can be seen (those wholly below the horizon are left out).",
+	      out);
 	if (!page->details)
 		fputs(" With so many materials this page shows no more of each; <code>brdfpack report ARCHIVE NAME…</code> shows all of "
 		      "those that are named.",

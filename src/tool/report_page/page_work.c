@@ -152,18 +152,18 @@ static bp_status sheet_write(FILE *out, const struct page_job *job, const struct
 	fprintf(out, "<li class=tile data-name=\"");
 	html_text(out, name);
 	fprintf(out, "\" data-index=%llu data-bytes=%u data-error=%.6g data-albedo=%.4f data-colour=%.2f><a",
-	        (unsigned long long)subject->item->entry.ordinal, subject->head.record_bytes, fidelity->log_rmse,
+	        (unsigned long long)subject->item->entry.ordinal, subject->head.record_bytes, fidelity->seen_log_rmse,
 	        subject->energy.largest, picture_hue(&thumbnail));
 	if (job->details)
 		fprintf(out, " href=\"#m%llu\"", (unsigned long long)subject->item->entry.ordinal);
 	fputs(">", out);
 	snprintf(alt, sizeof alt, "sphere of %s: %u bytes, log RMSE %.3g, largest albedo %.2f", name, subject->head.record_bytes,
-	         fidelity->log_rmse, subject->energy.largest);
+	         fidelity->seen_log_rmse, subject->energy.largest);
 	status = html_picture(out, &thumbnail, "ball", alt, error);
 	picture_free(&thumbnail);
 	fputs("<span class=name>", out);
 	html_name(out, name);
-	fprintf(out, "</span></a><small>%u B · %.2g</small></li>\n", subject->head.record_bytes, fidelity->log_rmse);
+	fprintf(out, "</span></a><small>%u B · %.2g</small></li>\n", subject->head.record_bytes, fidelity->seen_log_rmse);
 	return status;
 }
 
@@ -242,12 +242,13 @@ static void layers_write(FILE *out, const struct subject *subject)
 	const struct record_head *head = &subject->head;
 	fputs("<table><caption>Layers: what loading up to each costs, and the error that is left</caption><thead><tr><th "
 	      "scope=col>layer<th scope=col>bytes"
-	      "<th scope=col>log RMSE<th scope=col>cube-root RMSE<th scope=col>largest relative error</tr></thead><tbody>",
+	      "<th scope=col>log RMSE<th scope=col>below the horizon too<th scope=col>cube-root RMSE<th scope=col>largest relative "
+	      "error</tr></thead><tbody>",
 	      out);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.3g</tr>", l + 1, head->layers[l].bytes,
-		        head->layers[l].fidelity.log_rmse, head->layers[l].fidelity.cube_root_rmse,
-		        head->layers[l].fidelity.largest_relative);
+		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.5f<td>%.3g</tr>", l + 1, head->layers[l].bytes,
+		        head->layers[l].fidelity.seen_log_rmse, head->layers[l].fidelity.log_rmse,
+		        head->layers[l].fidelity.cube_root_rmse, head->layers[l].fidelity.largest_relative);
 	fputs("</tbody></table>", out);
 }
 
@@ -345,7 +346,7 @@ static void result_fill(const struct page_job *job, const struct subject *subjec
 	result->layer_count = subject->head.layer_count;
 	for (uint32_t l = 0; l < subject->head.layer_count; l++) {
 		result->layer_bytes[l] = subject->head.layers[l].bytes;
-		result->layer_error[l] = subject->head.layers[l].fidelity.log_rmse;
+		result->layer_error[l] = subject->head.layers[l].fidelity.seen_log_rmse;
 	}
 	result->albedo = subject->energy.largest;
 	result->measured = subject->measured;

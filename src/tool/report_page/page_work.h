@@ -18,7 +18,7 @@ struct page_result {
 	uint32_t record_bytes;
 	uint32_t layer_count;
 	uint32_t layer_bytes[LAYERS_MAX];
-	double layer_error[LAYERS_MAX]; /* log RMSE */
+	double layer_error[LAYERS_MAX]; /* log RMSE of what can be seen */
 	double albedo;                  /* the largest directional one */
 	bool measured;                  /* compared with its file */
 	bool compared[LIGHTING_COUNT];
