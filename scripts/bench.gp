@@ -38,7 +38,7 @@ do for [p = 1:3] {
 	set rmargin at screen 0.43
 	set logscale y
 	set format y '%g'
-	set ylabel 'log RMSE (lower is better)'
+	set ylabel 'log RMSE of cells that can be seen (lower is better)'
 	plot for [m = 1:count] points index m - 1 using p:4 with linespoints lw (own(m) ? 3 : 1.5) ps 1 pt shape[style(m)] \
 		lc rgb colour[style(m)] title word(methods, m)
 

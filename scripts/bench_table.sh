@@ -1,9 +1,9 @@
 #!/bin/sh
-# bench_table.sh TABLE.tsv [BUDGET]: the table of methods in RESULTS.md, as Markdown: one row per method at BUDGET bytes (60400) or at the
-# method's own size, the sphere's PSNR under the key lights per material, and medians. Of an analytic model by two objectives the one with
-# the better mean PSNR is named. Under it the figures that the
-# paper prints for its own method and its rivals; then, if the run had any, the means for each effort (means, because
-# efforts differ by less than materials do).
+# bench_table.sh TABLE.tsv [BUDGET]: the table of methods in RESULTS.md, as Markdown: one row per method at BUDGET bytes (60400) or
+# at the method's own size, the sphere's PSNR under the key lights per material, and medians; the log RMSE is that of the cells that
+# can be seen. Of an analytic model by two objectives the one with the better mean PSNR is named. Under it the figures that the paper
+# prints for its own method and its rivals; then, if the run had any, the means for each effort (means, because efforts differ by
+# less than materials do).
 set -e
 table=$1 budget=${2:-60400}
 [ -r "$table" ] || { echo "usage: bench_table.sh TABLE.tsv [BUDGET]" >&2; exit 2; }
@@ -13,7 +13,7 @@ awk -F '\t' -v budget="$budget" '
 	$1 == "material" {for (n = 1; n <= NF; n++) column[$n] = n; next}
 	{
 		size = $(column["budget_bytes"])
-		if (size != "-" && size != budget || $(column["log_rmse"]) == "-") next
+		if (size != "-" && size != budget || $(column["seen_log_rmse"]) == "-") next
 		method = $2
 		if (("effort" in column) && $(column["effort"]) != "-") {
 			if ($1 != "(median)")
@@ -23,7 +23,7 @@ awk -F '\t' -v budget="$budget" '
 		if ($1 == "(median)") {
 			order[++methods] = method
 			bytes[method] = $(column["bytes"]); numbers[method] = $(column["parameters"]) == "-" ? "" : $(column["parameters"]); fit[method] = $(column["fit_s"]); decode[method] = $(column["decode_s"])
-			evaluate[method] = $(column["evaluate_ns"]); rmse[method] = $(column["log_rmse"])
+			evaluate[method] = $(column["evaluate_ns"]); rmse[method] = $(column["seen_log_rmse"])
 			all[method] = $(column["psnr_key_db"]) " / " $(column["psnr_env_db"])
 		} else {
 			if (!($1 in seen)) {seen[$1] = 1; materials[++count] = $1}
@@ -44,11 +44,11 @@ awk -F '\t' -v budget="$budget" '
 	function effort_add(e) {
 		if (!(e in tried)) effort[++efforts] = e
 		tried[e]++
-		size_sum[e] += $(column["bytes"]); fit_sum[e] += $(column["fit_s"]); rmse_sum[e] += $(column["log_rmse"])
+		size_sum[e] += $(column["bytes"]); fit_sum[e] += $(column["fit_s"]); rmse_sum[e] += $(column["seen_log_rmse"])
 		key_sum[e] += $(column["psnr_key_db"]); env_sum[e] += $(column["psnr_env_db"])
 	}
 	function table_of_efforts(    text, n, e, k) {
-		text = "\n| effort | bytes | fit s | log RMSE | PSNR key / env |\n|--:|--:|--:|--:|--:|\n"
+		text = "\n| effort | bytes | fit s | seen log RMSE | PSNR key / env |\n|--:|--:|--:|--:|--:|\n"
 		for (n = 1; n <= efforts; n++) {
 			e = effort[n]; k = tried[e]
 			text = text sprintf("| %s | %.0f | %.3g | %.6f | %.2f / %.2f |\n", e, size_sum[e] / k, fit_sum[e] / k, rmse_sum[e] / k, key_sum[e] / k, env_sum[e] / k)
@@ -68,7 +68,7 @@ awk -F '\t' -v budget="$budget" '
 		if (!methods && !efforts) {print "bench_table.sh: no rows at " budget " bytes" > "/dev/stderr"; exit 1}
 		printf "%s\n", head
 		if (!methods) {printf "%s", substr(table_of_efforts(), 2); exit}
-		line = "| method | bytes | numbers | fit s | decode s | evaluate ns | log RMSE | PSNR key / env |"; rule = "|---|--:|--:|--:|--:|--:|--:|--:|"
+		line = "| method | bytes | numbers | fit s | decode s | evaluate ns | seen log RMSE | PSNR key / env |"; rule = "|---|--:|--:|--:|--:|--:|--:|--:|"
 		for (n = 1; n <= count; n++) {line = line " " materials[n] " |"; rule = rule "--:|"}
 		print line; print rule
 		for (m = 1; m <= methods; m++) {

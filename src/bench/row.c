@@ -25,6 +25,7 @@ static const struct column COLUMNS[] = {
 	{"psnr8_point_db", "%.2f", AT(figures.psnr[LIGHTING_POINT].eight_bit)},
 	{"psnr_point_db", "%.2f", AT(figures.psnr[LIGHTING_POINT].real)},
 	{"log_rmse", "%.5g", AT(figures.fidelity.log_rmse)},
+	{"seen_log_rmse", "%.5g", AT(figures.fidelity.seen_log_rmse)},
 	{"cube_root_rmse", "%.5g", AT(figures.fidelity.cube_root_rmse)},
 	{"largest_relative", "%.4g", AT(figures.fidelity.largest_relative)},
 };

@@ -346,6 +346,7 @@ const struct command command_compare = {
 			 "  PSNR       of a rendered sphere in dB, from 8-bit and from float sRGB values\n"
 			 "  dE ITP     mean colour difference of its pixels (ITU-R BT.2124); 1 is just noticeable at best\n"
 			 "  log RMSE   root mean square of log10((decoded + 1e-3)/(measured + 1e-3))\n"
+			 "  seen       the same over the cells that can be seen: not wholly below the horizon\n"
 			 "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
 			 "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"
 			 "  albedo     the largest share of light sent back, for directions 0 to 85 degrees from the normal\n"

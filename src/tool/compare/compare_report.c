@@ -14,6 +14,7 @@ enum figure {
 	FIGURE_SPHERE, /* three per lighting: PSNR 8-bit, float, and dE ITP */
 	FIGURES_PER_SPHERE = 3,
 	FIGURE_LOG = FIGURES_PER_SPHERE * LIGHTING_COUNT,
+	FIGURE_SEEN,
 	FIGURE_CUBE_ROOT,
 	FIGURE_RELATIVE,
 	FIGURE_ALBEDO_MEASURED,
@@ -27,11 +28,14 @@ static const struct {
 	int width, digits;
 	bool low_is_bad;
 } FIGURES[FIGURE_COUNT] = {
-	{"psnr8_key", 6, 2, true},        {"psnr_key", 6, 2, true},        {"delta_itp_key", 7, 4, false},
-	{"psnr8_env", 6, 2, true},        {"psnr_env", 6, 2, true},        {"delta_itp_env", 7, 4, false},
-	{"psnr8_point", 6, 2, true},      {"psnr_point", 6, 2, true},      {"delta_itp_point", 7, 4, false},
-	{"log_rmse", 8, 5, false},        {"cube_root_rmse", 9, 6, false}, {"largest_relative", 9, 4, false},
-	{"albedo_measured", 8, 4, false}, {"albedo", 8, 4, false},         {"bytes", 8, 0, false},
+	{"psnr8_key", 6, 2, true},         {"psnr_key", 6, 2, true},
+	{"delta_itp_key", 7, 4, false},    {"psnr8_env", 6, 2, true},
+	{"psnr_env", 6, 2, true},          {"delta_itp_env", 7, 4, false},
+	{"psnr8_point", 6, 2, true},       {"psnr_point", 6, 2, true},
+	{"delta_itp_point", 7, 4, false},  {"log_rmse", 8, 5, false},
+	{"seen_log_rmse", 8, 5, false},    {"cube_root_rmse", 9, 6, false},
+	{"largest_relative", 9, 4, false}, {"albedo_measured", 8, 4, false},
+	{"albedo", 8, 4, false},           {"bytes", 8, 0, false},
 };
 
 static bool figure_shown(const struct compare_report *report, int figure)
@@ -49,6 +53,7 @@ static void figures_of(const struct compare_item *item, double values[FIGURE_COU
 		sphere[2] = comparison->itp[l];
 	}
 	values[FIGURE_LOG] = comparison->fidelity.log_rmse;
+	values[FIGURE_SEEN] = comparison->fidelity.seen_log_rmse;
 	values[FIGURE_CUBE_ROOT] = comparison->fidelity.cube_root_rmse;
 	values[FIGURE_RELATIVE] = comparison->fidelity.largest_relative;
 	values[FIGURE_ALBEDO_MEASURED] = comparison->measured.largest;
@@ -64,12 +69,12 @@ void compare_report_head(const struct compare_report *report)
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		if (report->lightings >> l & 1)
 			printf("   PSNR %-6s  dE ITP", lighting_name((enum lighting)l));
-	printf("       log cube-root  largest relative error, at          albedo\n");
+	printf("       log  of which cube-root  largest relative error, at          albedo\n");
 	printf("%-*s", report->name_width, "material");
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		if (report->lightings >> l & 1)
 			printf("  8-bit  float    mean");
-	printf("      RMSE      RMSE     value theta_h theta_d phi_d  measured  decoded    bytes\n");
+	printf("      RMSE      seen      RMSE     value theta_h theta_d phi_d  measured  decoded    bytes\n");
 }
 
 static void text_row(const struct compare_report *report, const char *name, const double values[FIGURE_COUNT],
