@@ -86,7 +86,7 @@ FIXTURE uint8_t *fixture_record(const char *name, uint32_t layers, size_t sectio
 				write_u8(bytes, (uint8_t)(i * 31 + l * 5 + (size_t)s + (unsigned char)name[0]));
 		}
 	}
-	assert_int_equal(record_write(&head, &sections, &record, record_bytes, NULL), BP_OK);
+	assert_int_equal(sections_join(&head, &sections, &record, record_bytes, NULL), BP_OK);
 	section_list_free(&sections);
 	return record;
 }

@@ -80,7 +80,7 @@ static void carried_check(const struct lattice *lattice, const struct carried *c
 	size_t bytes;
 	if (record_carried(lattice, carried, "m", options, &record, &bytes, NULL) != BP_OK || !record)
 		return;
-	if (record_head_parse(record, bytes, &head, NULL) != BP_OK || head.record_bytes != bytes)
+	if (record_head_read(record, bytes, &head, NULL) != BP_OK || head.record_bytes != bytes)
 		abort();
 	for (uint32_t layers = 1; layers <= head.layer_count; layers++) {
 		struct model *model;
@@ -118,7 +118,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 
 	memcpy(copy, data, count);
 	record_mend(copy, count);
-	if (record_head_parse(copy, count, &head, NULL) == BP_OK && lattice_cells(head.dims) <= WALK_CELLS_MAX) {
+	if (record_head_read(copy, count, &head, NULL) == BP_OK && lattice_cells(head.dims) <= WALK_CELLS_MAX) {
 		layers_decode(&head, &input, 1);
 		layers_decode(&head, &input, 0);
 		if (record_keep_layers(copy, count, 1, &kept, &kept_bytes, NULL) == BP_OK)

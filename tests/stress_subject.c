@@ -23,7 +23,7 @@ void packed_make(const struct lattice *lattice, const struct carried *carried, c
 	if (!out->status && !out->record)
 		out->status = record_encode(lattice, name, &source, options, &out->record, &out->record_bytes, NULL, NULL);
 	if (!out->status)
-		out->status = record_head_parse(out->record, out->record_bytes, &out->head, NULL);
+		out->status = record_head_read(out->record, out->record_bytes, &out->head, NULL);
 	if (out->status)
 		return;
 	out->value = malloc(3 * cells * sizeof *out->value);

@@ -19,7 +19,7 @@ static void values_make(const uint8_t *bytes, size_t count, double values[VALUES
 {
 	struct carried_writer writer = {.bytes = bytes, .count = count};
 	for (size_t n = 0; n < VALUES; n++)
-		values[n] = carried_next(&writer);
+		values[n] = carried_write(&writer);
 }
 
 static void bytes_make(uint8_t *bytes, size_t count)
@@ -46,7 +46,7 @@ static void what_was_written_is_found_among_measured_values(void **state)
 			file[3 * n + 2] = 1.0;
 		}
 		for (size_t at = 0; at < 3 * VALUES; at += 25) /* in portions, as files are read */
-			assert_true(carried_find(&reader, file + at, 25));
+			assert_true(carried_read(&reader, file + at, 25));
 		assert_true(reader.whole);
 		assert_int_equal(reader.count, counts[k]);
 		assert_memory_equal(reader.bytes, bytes, counts[k]);
@@ -83,7 +83,7 @@ static void room_is_six_bytes_to_a_value_less_twelve(void **state)
 static void nothing_found(const double *values, size_t count)
 {
 	struct carried_reader reader = {.values = count};
-	assert_true(carried_find(&reader, values, count));
+	assert_true(carried_read(&reader, values, count));
 	assert_false(reader.whole);
 	free(reader.bytes);
 }
@@ -121,7 +121,7 @@ static void it_begins_with_the_first_negative_value(void **state)
 		double values[VALUES + 1];
 		values[0] = before[k];
 		values_make(bytes, 7, values + 1);
-		assert_true(carried_find(&reader, values, VALUES + 1));
+		assert_true(carried_read(&reader, values, VALUES + 1));
 		assert_int_equal(reader.whole, k < 2);
 		free(reader.bytes);
 	}
@@ -148,7 +148,7 @@ static void a_file_that_lost_some_of_it_carries_nothing(void **state)
 	nothing_found(values, VALUES - 1);
 	announce(values, 300);
 	struct carried_reader reader = {.values = VALUES};
-	assert_true(carried_find(&reader, values, VALUES));
+	assert_true(carried_read(&reader, values, VALUES));
 	assert_true(reader.whole);
 	free(reader.bytes);
 }

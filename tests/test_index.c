@@ -14,7 +14,7 @@ static void archive_of_many(const char *path, uint32_t count, void name_of(uint3
 		name_of(i, name);
 		fixture_head(&head, name);
 		head.layer_count = 1;
-		assert_int_equal(record_write(&head, &sections, &record, &bytes, NULL), BP_OK);
+		assert_int_equal(sections_join(&head, &sections, &record, &bytes, NULL), BP_OK);
 		assert_int_equal(archive_writer_add(writer, record, bytes, NULL), BP_OK);
 		free(record);
 	}

@@ -127,7 +127,7 @@ static void scale_and_source_are_those_of_a_measured_file(void **state)
 	measured.source_bytes = 34992012;
 	measured.source_sha256[31] = 7;
 	struct packed told = pack(&measured, "a", NULL);
-	assert_int_equal(record_head_parse(told.bytes, told.count, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(told.bytes, told.count, &head, NULL), BP_OK);
 	assert_true(head.source.bytes == 34992012 && head.source.sha256[31] == 7 && head.source.nonfinite_count == 0);
 	bp_free(plain.bytes);
 	bp_free(scaled.bytes);
@@ -144,13 +144,13 @@ static void options_are_those_of_build(void **state)
 	bp_pack_options options = {.struct_bytes = sizeof options, .profile = 1, .budget_bytes = 2000, .effort = 7};
 	(void)state;
 	struct packed got = pack(&measured, "a", &options);
-	assert_int_equal(record_head_parse(got.bytes, got.count, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(got.bytes, got.count, &head, NULL), BP_OK);
 	assert_true(head.profile == PROFILE_PAPER && head.options.budget_bytes == 2000 && head.options.effort == 7 &&
 	            got.count <= 2000);
 	bp_free(got.bytes);
 	options = (bp_pack_options){.struct_bytes = sizeof options, .max_error = 0.01};
 	got = pack(&measured, "a", &options);
-	assert_int_equal(record_head_parse(got.bytes, got.count, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(got.bytes, got.count, &head, NULL), BP_OK);
 	assert_true(head.options.max_error == 0.01 && head.layers[head.layer_count - 1].fidelity.log_rmse <= 0.01);
 	bp_free(got.bytes);
 
@@ -451,7 +451,7 @@ static void a_record_takes_another_name(void **state)
 	struct record_head head;
 	(void)state;
 	assert_int_equal(bp_record_rename(record, bytes, "another", &renamed, &renamed_bytes, NULL), BP_OK);
-	assert_int_equal(record_head_parse(renamed, renamed_bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(renamed, renamed_bytes, &head, NULL), BP_OK);
 	assert_string_equal(head.name, "another");
 	bp_free(renamed);
 	expected_bytes = renamed_bytes;

@@ -7,7 +7,7 @@ static void a_head_comes_back_as_written(void **state)
 	struct record_head head, expected;
 	(void)state;
 	fixture_head(&expected, "alum-bronze");
-	assert_int_equal(record_head_parse(record, bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(record, bytes, &head, NULL), BP_OK);
 	assert_string_equal(head.name, "alum-bronze");
 	assert_int_equal(head.profile, PROFILE_PAPER);
 	assert_int_equal(head.head_bytes, record_head_size(11, 3, 6));
@@ -45,11 +45,11 @@ static void every_flipped_bit_of_a_head_is_noticed(void **state)
 	uint8_t *record = fixture_record("m", 2, 4, &bytes);
 	struct record_head head;
 	(void)state;
-	assert_int_equal(record_head_parse(record, bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(record, bytes, &head, NULL), BP_OK);
 	for (size_t bit = 0; bit < 8 * (size_t)head.head_bytes; bit++) {
 		struct record_head ignored;
 		record[bit / 8] ^= (uint8_t)(1 << bit % 8);
-		assert_int_not_equal(record_head_parse(record, bytes, &ignored, NULL), BP_OK);
+		assert_int_not_equal(record_head_read(record, bytes, &ignored, NULL), BP_OK);
 		record[bit / 8] ^= (uint8_t)(1 << bit % 8);
 	}
 	free(record);
@@ -61,11 +61,11 @@ static void every_short_head_is_noticed(void **state)
 	uint8_t *record = fixture_record("m", 2, 4, &bytes);
 	struct record_head head, ignored;
 	(void)state;
-	assert_int_equal(record_head_parse(record, bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(record, bytes, &head, NULL), BP_OK);
 	for (size_t count = 0; count < head.head_bytes; count++) {
 		uint8_t *copy = malloc(count ? count : 1); /* so that a sanitizer sees a read past the end */
 		memcpy(copy, record, count);
-		assert_int_equal(record_head_parse(copy, count, &ignored, NULL), BP_ERROR_CORRUPT);
+		assert_int_equal(record_head_read(copy, count, &ignored, NULL), BP_ERROR_CORRUPT);
 		free(copy);
 	}
 	free(record);
@@ -82,7 +82,7 @@ static bp_status parse_with(size_t at, uint64_t value, unsigned width)
 	for (unsigned i = 0; i < width; i++)
 		record[at + i] = (uint8_t)(value >> 8 * i);
 	store_u32(record + head_bytes - 4, bytes_crc32(record, head_bytes - 4));
-	status = record_head_parse(record, bytes, &head, NULL);
+	status = record_head_read(record, bytes, &head, NULL);
 	free(record);
 	return status;
 }
@@ -147,8 +147,8 @@ static void dropping_layers_keeps_the_other_sections_byte_for_byte(void **state)
 	struct record_head full, head;
 	(void)state;
 	assert_int_equal(record_keep_layers(record, bytes, 2, &kept, &kept_bytes, NULL), BP_OK);
-	assert_int_equal(record_head_parse(record, bytes, &full, NULL), BP_OK);
-	assert_int_equal(record_head_parse(kept, kept_bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(record, bytes, &full, NULL), BP_OK);
+	assert_int_equal(record_head_read(kept, kept_bytes, &head, NULL), BP_OK);
 	assert_int_equal(head.layer_count, 2);
 	assert_int_equal(head.section_count, 4);
 	for (int i = 0; i < 4; i++)
@@ -177,9 +177,9 @@ static void sections_out_of_order_are_not_written(void **state)
 	head.layer_count = 2;
 	write_u8(section_add(&sections, SECTION_PAIR_HD, 1, 1, 1, 0, NAN), 1);
 	write_u8(section_add(&sections, SECTION_PAIR_HD, 1, 1, 0, 0, NAN), 1);
-	assert_int_equal(record_write(&head, &sections, &record, &bytes, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(sections_join(&head, &sections, &record, &bytes, NULL), BP_ERROR_ARGUMENT);
 	strcpy(head.name, "a/b");
-	assert_int_equal(record_write(&head, &sections, &record, &bytes, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(sections_join(&head, &sections, &record, &bytes, NULL), BP_ERROR_ARGUMENT);
 	section_list_free(&sections);
 }
 

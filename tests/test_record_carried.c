@@ -35,7 +35,7 @@ struct packed {
 static void decode(struct packed *packed)
 {
 	struct model *model;
-	assert_int_equal(record_head_parse(packed->record, packed->bytes, &packed->head, NULL), BP_OK);
+	assert_int_equal(record_head_read(packed->record, packed->bytes, &packed->head, NULL), BP_OK);
 	assert_int_equal(record_decode_whole(&packed->head, 0, packed->record, &model, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(packed->head.dims, &packed->table, NULL), BP_OK);
 	assert_int_equal(model_expand(model, 0, &packed->table, NULL), BP_OK);
@@ -245,7 +245,7 @@ static void foreign_make(const struct packed *first, void (*change)(struct recor
 		            first->record + entry->offset, entry->bytes);
 	}
 	change(&head, &sections);
-	assert_int_equal(record_write(&head, &sections, record, bytes, NULL), BP_OK);
+	assert_int_equal(sections_join(&head, &sections, record, bytes, NULL), BP_OK);
 	section_list_free(&sections);
 }
 
@@ -336,7 +336,7 @@ static void a_shortened_record_is_kept_as_it_is(void **state)
 	extracted(&shorter, shorter.record, shorter.bytes, &file);
 	assert_int_equal(record_carried(&file.lattice, &file.carried, "m", &USUAL[1], &record, &bytes, NULL), BP_OK);
 	assert_non_null(record);
-	assert_int_equal(record_head_parse(record, bytes, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(record, bytes, &head, NULL), BP_OK);
 	assert_int_equal(head.codec_version, RECORD_LAYERS_DROPPED);
 	free(record);
 	file_free(&file);

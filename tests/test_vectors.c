@@ -57,7 +57,7 @@ static void make_with_section(const char *path, uint32_t flags)
 	size_t bytes;
 	vector_encode("material", SHAPE_FULL, &head, &sections);
 	write_bytes(section_add(&sections, (enum section_type)900, 1, 1, 2, flags, 0.5), "of a later version", 18);
-	assert_int_equal(record_write(&head, &sections, &record, &bytes, NULL), BP_OK);
+	assert_int_equal(sections_join(&head, &sections, &record, &bytes, NULL), BP_OK);
 	section_list_free(&sections);
 	vector_archive(path, &record, &bytes, 1);
 }

@@ -88,7 +88,7 @@ FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 
 FIXTURE void vector_model_free(struct model *model) { model_free(model); }
 
-/* The model as sections, and a head that fits them; the caller may change either before record_write. */
+/* The model as sections, and a head that fits them; the caller may change either before sections_join. */
 FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct record_head *head, struct section_list *sections)
 {
 	struct encode_request request = {.name_bytes = strlen(name), .record_bytes_max = 60400};
@@ -110,7 +110,7 @@ FIXTURE uint8_t *vector_record(const char *name, struct vector_shape shape, size
 	struct section_list sections;
 	uint8_t *record = NULL;
 	vector_encode(name, shape, &head, &sections);
-	assert_int_equal(record_write(&head, &sections, &record, bytes, NULL), BP_OK);
+	assert_int_equal(sections_join(&head, &sections, &record, bytes, NULL), BP_OK);
 	section_list_free(&sections);
 	return record;
 }

@@ -246,7 +246,7 @@ FIXTURE void sections_change(const char *path, void change(struct record_head *h
 	size_t bytes;
 	vector_encode("material", SHAPE_FULL, &head, &sections);
 	change(&head, &sections);
-	assert_int_equal(record_write(&head, &sections, &record, &bytes, NULL), BP_OK);
+	assert_int_equal(sections_join(&head, &sections, &record, &bytes, NULL), BP_OK);
 	section_list_free(&sections);
 	vector_archive(path, &record, &bytes, 1);
 }

@@ -25,7 +25,7 @@ FIXTURE void vector_lattice(struct lattice_dims d, double scale, struct lattice 
 	lattice_validate(out);
 }
 
-/* Fitted and encoded; the caller may change the sections before record_write. Error figures are invented, as for the others. */
+/* Fitted and encoded; the caller may change the sections before sections_join. Error figures are invented, as for the others. */
 FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, double scale, uint32_t budget,
                                     struct record_head *head, struct section_list *sections)
 {
@@ -54,7 +54,7 @@ FIXTURE void vector_spectral_write(const char *path, struct record_head *head, s
 {
 	uint8_t *record;
 	size_t bytes;
-	assert_int_equal(record_write(head, sections, &record, &bytes, NULL), BP_OK);
+	assert_int_equal(sections_join(head, sections, &record, &bytes, NULL), BP_OK);
 	section_list_free(sections);
 	vector_archive(path, &record, &bytes, 1);
 }

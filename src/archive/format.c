@@ -43,8 +43,8 @@ static bp_status header_check(const struct archive_header *header, uint64_t file
 	return BP_OK;
 }
 
-bp_status archive_header_parse(const uint8_t *bytes, size_t count, uint64_t file_bytes, struct archive_header *out,
-                               bp_error *error)
+bp_status archive_header_read(const uint8_t *bytes, size_t count, uint64_t file_bytes, struct archive_header *out,
+                              bp_error *error)
 {
 	struct byte_reader in = byte_reader_over(bytes, count);
 	struct archive_header header;

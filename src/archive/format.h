@@ -52,7 +52,7 @@ void archive_header_write(const struct archive_header *header, uint8_t bytes[ARC
  * Checks and parses the first `count` bytes (up to 64) of a file of file_bytes. BP_ERROR_NOT_OURS without the magic,
  * BP_ERROR_CHECKSUM, BP_ERROR_UNSUPPORTED, or BP_ERROR_CORRUPT where sizes do not fit each other or the file.
  */
-bp_status archive_header_parse(const uint8_t *bytes, size_t count, uint64_t file_bytes, struct archive_header *out,
-                               bp_error *error);
+bp_status archive_header_read(const uint8_t *bytes, size_t count, uint64_t file_bytes, struct archive_header *out,
+                              bp_error *error);
 
 #endif

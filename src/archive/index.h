@@ -60,7 +60,7 @@ struct index_page {
 };
 
 /* Checks and parses page->bytes, filling the rest. Offsets in errors count from the page's start. */
-bp_status index_page_parse(struct index_page *page, const struct page_expect *expect, bp_error *error);
+bp_status index_page_read(struct index_page *page, const struct page_expect *expect, bp_error *error);
 
 /* Entry i of a leaf. */
 void index_leaf_entry(const struct index_page *leaf, uint32_t i, struct index_entry *out);

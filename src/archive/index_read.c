@@ -106,7 +106,7 @@ static bp_status entry_check(const struct index_page *page, uint32_t i, size_t a
 	return BP_OK;
 }
 
-bp_status index_page_parse(struct index_page *page, const struct page_expect *expect, bp_error *error)
+bp_status index_page_read(struct index_page *page, const struct page_expect *expect, bp_error *error)
 {
 	size_t at = PAGE_HEAD_BYTES;
 	uint32_t name_bytes;

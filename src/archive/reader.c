@@ -61,7 +61,7 @@ bp_status archive_page_read(const struct bp_archive *archive, const struct page_
 		                 archive->header.page_count);
 	status = archive_read(archive, offset, page->bytes, PAGE_BYTES, error);
 	if (!status)
-		status = offset_shift(index_page_parse(page, expect, error), offset, error);
+		status = offset_shift(index_page_read(page, expect, error), offset, error);
 	if (status)
 		page->count = 0;
 	return status;
@@ -74,7 +74,7 @@ static bp_status header_and_root_read(struct bp_archive *archive, uint64_t file_
 	struct page_expect root;
 	bp_status status = archive_read(archive, 0, bytes, count, error);
 	if (!status)
-		status = archive_header_parse(bytes, count, file_bytes, &archive->header, error);
+		status = archive_header_read(bytes, count, file_bytes, &archive->header, error);
 	if (status || archive->header.count == 0)
 		return status;
 	root = (struct page_expect){.number = archive->header.page_count - 1, .level = archive->header.depth - 1};
@@ -289,7 +289,7 @@ bp_status archive_entry_head(const struct bp_archive *archive, const struct inde
 	if (!status)
 		status = archive_read(archive, entry->offset, bytes, entry->head_bytes, error);
 	if (!status)
-		status = offset_shift(record_head_parse(bytes, entry->head_bytes, &head, error), entry->offset, error);
+		status = offset_shift(record_head_read(bytes, entry->head_bytes, &head, error), entry->offset, error);
 	if (!status)
 		status = head_check(entry, &head, error);
 	if (!status)
@@ -310,7 +310,7 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 		return error_memory(error, entry->record_bytes);
 	status = archive_read(archive, entry->offset, record, entry->record_bytes, error);
 	if (!status)
-		status = offset_shift(record_head_parse(record, entry->record_bytes, &head, error), entry->offset, error);
+		status = offset_shift(record_head_read(record, entry->record_bytes, &head, error), entry->offset, error);
 	if (!status)
 		status = head_check(entry, &head, error);
 	for (uint32_t i = 0; !status && i < head.section_count; i++) {

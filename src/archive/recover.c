@@ -87,7 +87,7 @@ static bp_status record_try(struct scan *scan, uint64_t offset, uint64_t *next, 
 	bool intact;
 	*next = offset + 1;
 	if (there < RECORD_PROBE_BYTES || record_probe(scan->record, &head_bytes, &record_bytes, NULL) != BP_OK ||
-	    record_head_parse(scan->record, there, &head, NULL) != BP_OK)
+	    record_head_read(scan->record, there, &head, NULL) != BP_OK)
 		return BP_OK;
 	there = scan_read(scan, offset, scan->record, record_bytes);
 	intact = there == record_bytes;
@@ -128,7 +128,7 @@ static bp_status leaf_try(struct scan *scan, uint64_t offset, uint64_t *next, bp
 	if (scan_read(scan, offset, page.bytes, PAGE_BYTES) != PAGE_BYTES || load_u16(page.bytes + 4) != 0)
 		return BP_OK;
 	expect.first_ordinal = load_u64(page.bytes + 8);
-	if (index_page_parse(&page, &expect, NULL) != BP_OK)
+	if (index_page_read(&page, &expect, NULL) != BP_OK)
 		return BP_OK;
 	*next = offset + PAGE_BYTES;
 	for (uint32_t i = 0; i < page.count; i++) {

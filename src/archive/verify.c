@@ -176,7 +176,7 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
 	header = archive_header(archive);
 	walk.next_offset = ARCHIVE_HEADER_BYTES;
 	if (archive_read(archive, 0, bytes, sizeof bytes, &problem) != BP_OK ||
-	    archive_header_parse(bytes, sizeof bytes, header->file_bytes, &again, &problem) != BP_OK)
+	    archive_header_read(bytes, sizeof bytes, header->file_bytes, &again, &problem) != BP_OK)
 		problem_report(&walk, NULL, &problem);
 	if (header->page_count && !walk.ended) {
 		struct page_expect root = {.number = header->page_count - 1, .level = header->depth - 1};

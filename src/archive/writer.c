@@ -92,7 +92,7 @@ bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *erro
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
 {
 	struct record_head head;
-	bp_status status = record_head_parse(record, record_bytes, &head, error);
+	bp_status status = record_head_read(record, record_bytes, &head, error);
 	if (status)
 		return status;
 	if (head.record_bytes != record_bytes)

@@ -1,7 +1,7 @@
 /*
  * profile.c: this project's own records, through the same functions as `brdfpack build` and `extract`.
  *
- * fit = record_encode (which also decodes and measures every layer); decode = record_head_parse, record_decode,
+ * fit = record_encode (which also decodes and measures every layer); decode = record_head_read, record_decode,
  * model_expand; evaluation = table_evaluate, interpolated, in the expanded memory form. The bytes are the whole
  * record's.
  */
@@ -83,7 +83,7 @@ static bp_status profile_expand(const void *opaque, struct expansion *out, bp_er
 	struct model *model = NULL;
 	bp_status status;
 
-	if ((status = record_head_parse(state->record, state->bytes, &head, error)) ||
+	if ((status = record_head_read(state->record, state->bytes, &head, error)) ||
 	    (status = record_decode_whole(&head, 0, state->record, &model, error)))
 		return status;
 	status = model_expand(model, 0, out, error);

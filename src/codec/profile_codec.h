@@ -44,7 +44,6 @@ struct profile_codec {
 /* Apart from the above, so that a program that only reads links no encoder. */
 struct profile_encoder {
 	enum profile profile;
-	bool meets_max_error; /* encode looks after options->max_error itself; otherwise record_encode tries budgets */
 	/*
 	 * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least
 	 * possible, when head and sections cannot be as small as request->record_bytes_max. An encoder that knows what

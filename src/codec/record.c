@@ -16,7 +16,7 @@ uint32_t record_layers_for(const struct record_head *head, double max_log_rmse)
 
 bp_status record_verify(const uint8_t *record, size_t count, struct record_head *head, bp_error *error)
 {
-	bp_status status = record_head_parse(record, count, head, error);
+	bp_status status = record_head_read(record, count, head, error);
 	if (status)
 		return status;
 	if (head->record_bytes != count)

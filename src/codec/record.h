@@ -2,7 +2,7 @@
  * record.h: model <-> bytes: one material's record (format-spec/FORMAT.md, "Record").
  *
  *     record_encode   = model_fit -> sections -> decode -> fidelity of every layer -> head
- *     record_head_parse -> record_decode -> model
+ *     record_head_read -> record_decode -> model
  */
 #ifndef CODEC_RECORD_H
 #define CODEC_RECORD_H
@@ -110,7 +110,11 @@ bp_status record_probe(const uint8_t bytes[RECORD_PROBE_BYTES], uint32_t *head_b
  * Checks and parses the first `count` bytes of a record (at least its head). Offsets in errors count
  * from the record's start. Profiles, sections and codecs that this reader does not know are no error here.
  */
-bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_head *head, bp_error *error);
+bp_status record_head_read(const uint8_t *bytes, size_t count, struct record_head *head, bp_error *error);
+
+struct byte_buffer;
+/* Appends the head, all of which is filled, to an empty buffer. Of the options it takes budget, bound and effort. */
+void record_head_write(const struct record_head *head, struct byte_buffer *out);
 
 /* Delivers `count` bytes at `offset` from the record's start; offsets in its errors are the caller's to understand. */
 typedef bp_status record_fetch_fn(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error);

@@ -61,7 +61,7 @@ bp_status record_carried(const struct lattice *lattice, const struct carried *ca
 
 	*record = NULL;
 	if (!carried->bytes || name_fault(name, name_bytes) ||
-	    record_head_parse(carried->bytes, carried->count, &head, NULL) != BP_OK ||
+	    record_head_read(carried->bytes, carried->count, &head, NULL) != BP_OK ||
 	    !head_serves(&head, lattice, carried->count, name_bytes, options))
 		return BP_OK;
 	const enum stage before = stage_enter(STAGE_CODE);

@@ -30,7 +30,7 @@ static bp_status record_copy(const uint8_t *record, size_t count, uint32_t layer
 		memset(head.name, 0, sizeof head.name);
 		memcpy(head.name, name, strlen(name));
 	}
-	const bp_status written = record_write(&head, &kept, out, out_bytes, error);
+	const bp_status written = sections_join(&head, &kept, out, out_bytes, error);
 	section_list_free(&kept);
 	return written;
 }

@@ -172,12 +172,12 @@ bp_status record_encode(const struct lattice *lattice, const char *name, const s
 	packing.model = model;
 	packing.request = (struct encode_request){.options = options, .name_bytes = name_bytes};
 	head_fill(&packing.head, model, name, source, options, profile_codec_find(options->profile)->version);
-	if (options->max_error > 0 && !packing.encoder->meets_max_error)
+	if (options->max_error > 0)
 		status = record_search(&packing, options->max_error, &packed, error);
 	else
-		status = record_build(&packing, options->max_error > 0 ? RECORD_BUDGET_MAX : options->budget_bytes, &packed, error);
+		status = record_build(&packing, options->budget_bytes, &packed, error);
 	if (!status && head)
-		status = record_head_parse(packed.record, packed.bytes, head, error);
+		status = record_head_read(packed.record, packed.bytes, head, error);
 	model_free(model);
 	if (status) {
 		free(packed.record);

@@ -58,11 +58,11 @@ bp_status record_measure(struct record_head *head, const struct section_list *se
 {
 	uint8_t *unmeasured = NULL;
 	/* Once to have the bytes that are decoded, once more with what was measured on them. */
-	bp_status status = record_write(head, sections, &unmeasured, record_bytes, error);
+	bp_status status = sections_join(head, sections, &unmeasured, record_bytes, error);
 	const enum stage before = stage_enter(STAGE_MEASURE);
 	if (!status)
 		status = layers_measure(head, unmeasured, lattice, decoded, watch, error);
 	free(unmeasured);
 	stage_enter(before);
-	return status ? status : record_write(head, sections, record, record_bytes, error);
+	return status ? status : sections_join(head, sections, record, record_bytes, error);
 }

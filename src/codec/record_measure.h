@@ -7,7 +7,7 @@
 #include "section.h"
 
 /*
- * Head and sections -> record (record_write), with the figures of every layer against the lattice; *record is malloc'ed. `decoded`:
+ * Head and sections -> record (sections_join), with the figures of every layer against the lattice; *record is malloc'ed. `decoded`:
  * the model that they decode to, where the caller has it, or NULL.
  * `watch` is told before every layer.
  */

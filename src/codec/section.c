@@ -1,7 +1,5 @@
 #include "section.h"
 
-#include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,74 +62,8 @@ static bp_status head_lay_out(struct record_head *head, const struct section_lis
 	return BP_OK;
 }
 
-static void head_write_tables(const struct record_head *head, struct byte_buffer *out)
-{
-	for (uint32_t l = 0; l < head->layer_count; l++) {
-		const struct record_layer *layer = &head->layers[l];
-		write_u32(out, layer->bytes);
-		write_f32(out, (float)fmin(layer->fidelity.seen_log_rmse, (double)FLT_MAX));
-		write_f64(out, layer->fidelity.log_rmse);
-		write_f64(out, layer->fidelity.cube_root_rmse);
-		write_f64(out, layer->fidelity.largest_relative);
-	}
-	for (uint32_t i = 0; i < head->section_count; i++) {
-		const struct record_section *entry = &head->sections[i];
-		write_u16(out, entry->type);
-		write_u16(out, entry->codec);
-		write_u16(out, entry->version);
-		write_u16(out, entry->layer);
-		write_u16(out, entry->flags);
-		write_u16(out, 0);
-		write_u32(out, entry->offset);
-		write_u32(out, entry->bytes);
-		write_u32(out, entry->crc32);
-		/* One bit pattern for "none", whatever NaN the processor made. */
-		if (isnan(entry->error))
-			write_u64(out, UINT64_C(0x7FF8000000000000));
-		else
-			write_f64(out, entry->error);
-	}
-}
-
-static void head_write(const struct record_head *head, struct byte_buffer *out)
-{
-	size_t name_bytes = strlen(head->name);
-	write_bytes(out, RECORD_MAGIC, RECORD_MAGIC_BYTES);
-	write_u32(out, head->head_bytes);
-	write_u32(out, head->record_bytes);
-	write_u16(out, RECORD_VERSION);
-	write_u16(out, (uint16_t)head->profile);
-	write_u32(out, head->codec_version);
-	write_u16(out, (uint16_t)head->dims.theta_h);
-	write_u16(out, (uint16_t)head->dims.theta_d);
-	write_u16(out, (uint16_t)head->dims.phi_d);
-	write_u8(out, (uint8_t)name_bytes);
-	write_u8(out, (uint8_t)head->layer_count);
-	write_u16(out, (uint16_t)head->section_count);
-	write_u16(out, (uint16_t)head->left_out);
-	write_u32(out, head->options.budget_bytes);
-	write_f64(out, head->options.max_error);
-	write_u32(out, (uint32_t)head->options.effort);
-	write_u32(out, 0);
-	write_f64(out, head->horizon_limit);
-	write_u64(out, head->source.bytes);
-	write_bytes(out, head->source.sha256, SHA256_BYTES);
-	write_u64(out, head->source.nonfinite_count);
-	for (int c = 0; c < 3; c++) {
-		write_f64(out, head->colour[c].diffuse);
-		write_f64(out, head->colour[c].specular);
-		write_f64(out, head->colour[c].rejected);
-		write_u32(out, head->colour[c].iterations);
-		write_u32(out, head->colour[c].converged);
-	}
-	head_write_tables(head, out);
-	write_bytes(out, head->name, name_bytes);
-	if (!out->failed)
-		write_u32(out, bytes_crc32(out->bytes, out->count));
-}
-
-bp_status record_write(struct record_head *head, const struct section_list *sections, uint8_t **record, size_t *record_bytes,
-                       bp_error *error)
+bp_status sections_join(struct record_head *head, const struct section_list *sections, uint8_t **record, size_t *record_bytes,
+                        bp_error *error)
 {
 	struct byte_buffer out = {0};
 	const char *fault = name_fault(head->name, strlen(head->name));
@@ -144,7 +76,7 @@ bp_status record_write(struct record_head *head, const struct section_list *sect
 	status = head_lay_out(head, sections, error);
 	if (status)
 		return status;
-	head_write(head, &out);
+	record_head_write(head, &out);
 	for (uint32_t i = 0; i < sections->count; i++)
 		write_bytes(&out, sections->bytes[i].bytes, sections->bytes[i].count);
 	if (out.failed) {

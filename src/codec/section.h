@@ -1,7 +1,7 @@
 /*
  * section.h: a record under construction: its sections' bytes and what the table will say of them.
  *
- * A profile's encoder adds sections in the order of their layers; record_write puts the head before
+ * A profile's encoder adds sections in the order of their layers; sections_join puts the head before
  * them. FORMAT.md, "Record", has the layout.
  */
 #ifndef CODEC_SECTION_H
@@ -12,7 +12,7 @@
 
 struct section_list {
 	uint32_t count;
-	struct record_section entry[RECORD_SECTIONS_MAX]; /* offset, bytes and crc32 are record_write's to fill */
+	struct record_section entry[RECORD_SECTIONS_MAX]; /* offset, bytes and crc32 are sections_join's to fill */
 	struct byte_buffer bytes[RECORD_SECTIONS_MAX];
 };
 
@@ -25,7 +25,7 @@ void section_list_free(struct section_list *list);
  * Head and sections -> one record, malloc'ed. Of *head the caller has filled name, profile, codec_version, dims,
  * horizon_limit, colour, options, source, layer_count, the layers' fidelity and left_out; the rest is filled here.
  */
-bp_status record_write(struct record_head *head, const struct section_list *sections, uint8_t **record, size_t *record_bytes,
-                       bp_error *error);
+bp_status sections_join(struct record_head *head, const struct section_list *sections, uint8_t **record, size_t *record_bytes,
+                        bp_error *error);
 
 #endif

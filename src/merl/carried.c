@@ -22,7 +22,7 @@ static uint8_t string_byte(const struct carried_writer *writer, size_t at)
 	return at - HEAD_BYTES < writer->count ? writer->bytes[at - HEAD_BYTES] : 0;
 }
 
-double carried_next(struct carried_writer *writer)
+double carried_write(struct carried_writer *writer)
 {
 	uint64_t bits = (uint64_t)SIGNATURE << SIGNATURE_SHIFT;
 	double value;
@@ -62,7 +62,7 @@ static bool value_read(struct carried_reader *reader, uint64_t bits)
 	return reader->at != HEAD_BYTES || head_read(reader);
 }
 
-bool carried_find(struct carried_reader *reader, const double *values, size_t count)
+bool carried_read(struct carried_reader *reader, const double *values, size_t count)
 {
 	for (size_t n = 0; n < count && !reader->ended; n++) {
 		uint64_t bits;

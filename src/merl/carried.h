@@ -33,7 +33,7 @@ struct carried_writer {
 	size_t count, at; /* at: of the whole string, its head included */
 };
 /* The next value; -1 once all is written, and from the start where count is 0. */
-double carried_next(struct carried_writer *writer);
+double carried_write(struct carried_writer *writer);
 
 /* What is found while a file is read: start from {values}. */
 struct carried_reader {
@@ -44,6 +44,6 @@ struct carried_reader {
 	uint8_t head[12];
 };
 /* Looks through the next values of the file, as they are stored there. False: no memory for the announced bytes. */
-bool carried_find(struct carried_reader *reader, const double *values, size_t count);
+bool carried_read(struct carried_reader *reader, const double *values, size_t count);
 
 #endif

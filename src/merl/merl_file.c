@@ -90,7 +90,7 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, struct c
 				return status;
 			if (got < count * sizeof *values)
 				return truncated(expected, in->done, error);
-			if (in->how.carried && !carried_find(carried, values, count))
+			if (in->how.carried && !carried_read(carried, values, count))
 				return error_memory(error, carried->count);
 			lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start);
 		}
@@ -241,7 +241,7 @@ static void decoded_fill(void *user, int channel, size_t start, size_t count, do
 	}
 	for (size_t n = 0; n < count; n++)
 		if (below[n])
-			values[n] = carried_next(&decoded->carried);
+			values[n] = carried_write(&decoded->carried);
 }
 
 static size_t marked(const uint8_t *mask, size_t cells)

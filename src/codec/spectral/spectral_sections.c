@@ -157,8 +157,8 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 	return BP_OK;
 }
 
-static bp_status planes_read(const struct section_bytes *section, struct planes *planes, uint32_t from, uint32_t *end,
-                             bp_error *error)
+static bp_status layer_decode(const struct section_bytes *section, struct planes *planes, uint32_t from, uint32_t *end,
+                              bp_error *error)
 {
 	struct mixed_coder coder = {.tables = mixer_tables_get()};
 	const uint32_t units = planes_units(planes);
@@ -204,7 +204,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 		if (sections[l + 1].entry->type != SECTION_PLANES || sections[l + 1].entry->layer != l)
 			status = error_set(error, BP_ERROR_CORRUPT, 0, "the planes of layer %u are not where they belong", l);
 		else
-			status = planes_read(&sections[l + 1], planes, end, &end, error);
+			status = layer_decode(&sections[l + 1], planes, end, &end, error);
 		decoded->end[l] = end;
 	}
 	if (!status)

@@ -45,7 +45,7 @@ static bp_status delivery_accept(struct build *build, struct item *item, const s
 		return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered no record");
 	const size_t record_bytes = result->record_bytes - sizeof delivery;
 	memcpy(&delivery, result->record, sizeof delivery);
-	bp_status status = record_head_parse(result->record + sizeof delivery, record_bytes, &outcome->head, error);
+	bp_status status = record_head_read(result->record + sizeof delivery, record_bytes, &outcome->head, error);
 	if (!status && (outcome->head.record_bytes != record_bytes || strcmp(outcome->head.name, item->source.name) != 0))
 		status = error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered a damaged record");
 	const struct manifest_entry *entry = manifest_find(&build->manifest, item->source.name);

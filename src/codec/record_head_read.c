@@ -46,7 +46,7 @@ bp_status record_probe(const uint8_t bytes[RECORD_PROBE_BYTES], uint32_t *head_b
 /* A figure of a layer: not negative, not NaN. */
 static bool figure_legal(double figure) { return figure >= 0; }
 
-static bp_status parse_layers(struct byte_reader *in, struct record_head *head, bp_error *error)
+static bp_status layers_read(struct byte_reader *in, struct record_head *head, bp_error *error)
 {
 	for (uint32_t l = 0; l < head->layer_count; l++) {
 		struct record_layer *layer = &head->layers[l];
@@ -64,7 +64,7 @@ static bp_status parse_layers(struct byte_reader *in, struct record_head *head, 
 }
 
 /* Sections fill the record behind the head without gap or overlap, in the order of their layers. */
-static bp_status parse_sections(struct byte_reader *in, struct record_head *head, bp_error *error)
+static bp_status sections_read(struct byte_reader *in, struct record_head *head, bp_error *error)
 {
 	uint64_t end = head->head_bytes;
 	for (uint32_t i = 0; i < head->section_count; i++) {
@@ -98,7 +98,7 @@ static bp_status parse_sections(struct byte_reader *in, struct record_head *head
 }
 
 /* A layer ends where its last section, or the last one of a layer below, ends. */
-static bp_status check_layer_bytes(const struct record_head *head, bp_error *error)
+static bp_status layers_check(const struct record_head *head, bp_error *error)
 {
 	uint32_t section = 0, end = head->head_bytes;
 	for (uint32_t l = 0; l < head->layer_count; l++) {
@@ -111,7 +111,7 @@ static bp_status check_layer_bytes(const struct record_head *head, bp_error *err
 	return BP_OK;
 }
 
-static bp_status parse_colour(struct byte_reader *in, struct record_head *head, bp_error *error)
+static bp_status colour_read(struct byte_reader *in, struct record_head *head, bp_error *error)
 {
 	for (uint32_t c = 0; c < 3; c++) {
 		struct colour_fit *fit = &head->colour[c];
@@ -128,7 +128,7 @@ static bp_status parse_colour(struct byte_reader *in, struct record_head *head, 
 }
 
 /* The fixed part behind the two sizes, up to the colours. */
-static bp_status parse_fixed(struct byte_reader *in, struct record_head *head, size_t *name_bytes, bp_error *error)
+static bp_status fixed_read(struct byte_reader *in, struct record_head *head, size_t *name_bytes, bp_error *error)
 {
 	uint32_t version, effort, zero;
 	in->at = AT_VERSION;
@@ -178,7 +178,7 @@ static bp_status parse_fixed(struct byte_reader *in, struct record_head *head, s
 	return BP_OK;
 }
 
-bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_head *out, bp_error *error)
+bp_status record_head_read(const uint8_t *bytes, size_t count, struct record_head *out, bp_error *error)
 {
 	struct record_head head;
 	struct byte_reader in;
@@ -199,15 +199,15 @@ bp_status record_head_parse(const uint8_t *bytes, size_t count, struct record_he
 	if (bytes_crc32(bytes, head.head_bytes - 4) != load_u32(bytes + head.head_bytes - 4))
 		return error_set(error, BP_ERROR_CHECKSUM, head.head_bytes - 4, "the checksum of the record's head differs");
 	in = byte_reader_over(bytes, head.head_bytes - 4);
-	status = parse_fixed(&in, &head, &name_bytes, error);
+	status = fixed_read(&in, &head, &name_bytes, error);
 	if (!status)
-		status = parse_colour(&in, &head, error);
+		status = colour_read(&in, &head, error);
 	if (!status)
-		status = parse_layers(&in, &head, error);
+		status = layers_read(&in, &head, error);
 	if (!status)
-		status = parse_sections(&in, &head, error);
+		status = sections_read(&in, &head, error);
 	if (!status)
-		status = check_layer_bytes(&head, error);
+		status = layers_check(&head, error);
 	if (status)
 		return status;
 	read_bytes(&in, head.name, name_bytes);
