@@ -64,9 +64,7 @@ static bp_status table_put(const struct model *model, const bp_table_options *op
 {
 	struct expansion table = {0};
 	uint8_t *below = NULL;
-	bp_status status = expansion_alloc(model->dims, &table, error);
-	if (!status)
-		status = model_expand(model, 0, &table, error);
+	bp_status status = model_expand(model, 0, &table, error);
 	if (!status && !options->continued) {
 		below = malloc(lattice_cells(model->dims));
 		status = below ? lattice_below_horizon(model->dims, model->horizon_limit, below, error)

@@ -5,7 +5,6 @@
 #include "codec/record.h"
 #include "environment.h"
 #include "error.h"
-#include "stage.h"
 
 enum { CHANNELS = 3, BUDGET_USUAL = 60400, EFFORT_USUAL = 5, EFFORT_MOST = 9 };
 #define ERROR_LEAST 1e-6

@@ -310,15 +310,9 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 		return error_memory(error, entry->record_bytes);
 	status = archive_read(archive, entry->offset, record, entry->record_bytes, error);
 	if (!status)
-		status = offset_shift(record_head_read(record, entry->record_bytes, &head, error), entry->offset, error);
+		status = offset_shift(record_verify(record, entry->record_bytes, &head, error), entry->offset, error);
 	if (!status)
 		status = head_check(entry, &head, error);
-	for (uint32_t i = 0; !status && i < head.section_count; i++) {
-		const struct record_section *section = &head.sections[i];
-		if (bytes_crc32(record + section->offset, section->bytes) != section->crc32)
-			status =
-				error_set(error, BP_ERROR_CHECKSUM, entry->offset + section->offset, "the checksum of section %u differs", i);
-	}
 	if (status) {
 		free(record);
 		return status;

@@ -1,5 +1,4 @@
 /* The rest of the reader: what needs a decoder. */
-#include "error.h"
 #include "reader.h"
 
 struct fetch_place {

@@ -65,7 +65,7 @@ static bp_status layers_check(const struct bp_archive *archive, const struct ind
                               bp_error *error)
 {
 	struct expansion table = {0};
-	bp_status status = expansion_alloc(head->dims, &table, error);
+	bp_status status = BP_OK;
 	for (uint32_t l = 1; !status && l <= head->layer_count; l++)
 		status = layer_check(archive, entry, head, l, &table, error);
 	expansion_free(&table);

@@ -130,11 +130,6 @@ static void run_yardsticks(struct run *run, int at, const char *name, const stru
 	}
 }
 
-static bool same_dims(struct lattice_dims a, struct lattice_dims b)
-{
-	return a.theta_h == b.theta_h && a.theta_d == b.theta_d && a.phi_d == b.phi_d;
-}
-
 static bp_status read_truth(const struct run *run, const char *name, struct lattice_dims dims, struct lattice *truth,
                             bp_error *error)
 {
@@ -143,7 +138,7 @@ static bp_status read_truth(const struct run *run, const char *name, struct latt
 
 	snprintf(path, sizeof path, "%s/%s.binary", run->truth, name);
 	status = lattice_read_path(path, &(struct merl_reading){.any_dims = true}, truth, error);
-	if (!status && !same_dims(truth->dims, dims))
+	if (!status && !lattice_dims_equal(truth->dims, dims))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s has other extents than the input", path);
 	return status;
 }
@@ -169,7 +164,7 @@ static void run_material(struct run *run, int at)
 		complain(run, name, "reading the truth", &error);
 		goto out;
 	}
-	if (!same_dims(run->dims, lattice.dims)) {
+	if (!lattice_dims_equal(run->dims, lattice.dims)) {
 		figure_plans_free(&run->plans);
 		run->plans = (struct figure_plans){{NULL}};
 		run->dims = lattice.dims;

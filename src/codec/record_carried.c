@@ -15,8 +15,7 @@ static bool head_serves(const struct record_head *head, const struct lattice *la
 	const uint64_t bytes = head->record_bytes - strlen(head->name) + name_bytes;
 	const bool bounded = options->max_error > 0;
 	return head->record_bytes == carried_bytes && head->profile == options->profile &&
-	       !memcmp(&head->dims, &lattice->dims, sizeof head->dims) &&
-	       bytes <= (bounded ? RECORD_BUDGET_MAX : options->budget_bytes) &&
+	       lattice_dims_equal(head->dims, lattice->dims) && bytes <= (bounded ? RECORD_BUDGET_MAX : options->budget_bytes) &&
 	       (!bounded || head->options.max_error == options->max_error);
 }
 
@@ -25,9 +24,7 @@ static bp_status model_compare(const struct lattice *lattice, const struct model
 {
 	struct expansion table = {0};
 	uint8_t *below = malloc(lattice_cells(lattice->dims));
-	bp_status status = below ? expansion_alloc(lattice->dims, &table, error) : error_memory(error, lattice_cells(lattice->dims));
-	if (!status)
-		status = model_expand(model, 0, &table, error);
+	bp_status status = below ? model_expand(model, 0, &table, error) : error_memory(error, lattice_cells(lattice->dims));
 	if (!status)
 		status = lattice_below_horizon(lattice->dims, model->horizon_limit, below, error);
 	if (!status)

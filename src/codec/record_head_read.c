@@ -2,9 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bytes.h"
 #include "error.h"
 #include "name.h"
-#include "section.h"
+#include "record.h"
 
 uint32_t record_head_size(size_t name_bytes, uint32_t layer_count, uint32_t section_count)
 {

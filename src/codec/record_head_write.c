@@ -2,7 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "section.h"
+#include "bytes.h"
+#include "record.h"
 
 static void layers_write(struct byte_buffer *out, const struct record_head *head)
 {

@@ -36,8 +36,6 @@ static bp_status layers_measure(struct record_head *head, const uint8_t *record,
 		uint32_t count = 0;
 		while (!status && count < at_once && l + count < head->layer_count) {
 			status = watch_tell(watch, 0.8 + 0.2 * (l + count) / head->layer_count, error);
-			if (!status && !tables[count].block)
-				status = expansion_alloc(head->dims, &tables[count], error);
 			if (!status)
 				status = layer_expand(head, record, decoded, l + count, &tables[count], error);
 			count++;

@@ -62,6 +62,10 @@ bool lattice_dims_legal(struct lattice_dims dims);
 /* BP_OK, or BP_ERROR_LIMIT with the extents and what is legal. */
 bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error);
 size_t lattice_cells(struct lattice_dims dims);
+static inline bool lattice_dims_equal(struct lattice_dims a, struct lattice_dims b)
+{
+	return a.theta_h == b.theta_h && a.theta_d == b.theta_d && a.phi_d == b.phi_d;
+}
 static inline size_t lattice_index(struct lattice_dims dims, uint32_t i, uint32_t j, uint32_t k)
 {
 	return k + (size_t)dims.phi_d * (j + (size_t)dims.theta_d * i);

@@ -55,9 +55,12 @@ void model_free(struct model *model)
 
 bp_status model_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
 {
-	const struct lattice_dims a = model->dims, b = out->dims;
+	const struct lattice_dims a = model->dims, b = out->block ? out->dims : a;
+	const bp_status status = out->block ? BP_OK : expansion_alloc(a, out, error);
 
-	if (a.theta_h != b.theta_h || a.theta_d != b.theta_d || a.phi_d != b.phi_d)
+	if (status)
+		return status;
+	if (!lattice_dims_equal(a, b))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the table has %u x %u x %u cells, the model %u x %u x %u",
 		                 b.theta_h, b.theta_d, b.phi_d, a.theta_h, a.theta_d, a.phi_d);
 	if (!layers || layers > model->layer_count)

@@ -23,20 +23,19 @@ static void half_take(const struct expansion *whole, struct expansion *out)
 bp_status model_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
 {
 	struct lattice_dims half;
-	struct expansion whole;
+	struct expansion whole = {0};
 
-	if (!model_has_half(model->dims, &half) || half.theta_h != out->dims.theta_h || half.theta_d != out->dims.theta_d ||
-	    half.phi_d != out->dims.phi_d)
+	if (!model_has_half(model->dims, &half) || (out->block && !lattice_dims_equal(half, out->dims)))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%u x %u x %u cells are not half of %u x %u x %u",
 		                 out->dims.theta_h, out->dims.theta_d, out->dims.phi_d, model->dims.theta_h, model->dims.theta_d,
 		                 model->dims.phi_d);
+	bp_status status = out->block ? BP_OK : expansion_alloc(half, out, error);
+	if (status)
+		return status;
 	if (!layers || layers > model->layer_count)
 		layers = model->layer_count;
 	if (model->profile == PROFILE_SPECTRAL && model->spectral && !model->spectral->coefficient[0])
 		return spectral_expand_half(model->spectral, layers, out, error);
-	bp_status status = expansion_alloc(model->dims, &whole, error);
-	if (status)
-		return status;
 	status = model_expand(model, layers, &whole, error);
 	if (!status)
 		half_take(&whole, out);

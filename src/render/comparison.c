@@ -4,15 +4,10 @@
 
 #include "error.h"
 
-static bool dims_equal(struct lattice_dims a, struct lattice_dims b)
-{
-	return a.theta_h == b.theta_h && a.theta_d == b.theta_d && a.phi_d == b.phi_d;
-}
-
 bp_status comparison_plans_make(struct comparison_plans *plans, struct lattice_dims dims, bp_error *error)
 {
 	bp_status status = BP_OK;
-	if (plans->energy && dims_equal(plans->dims, dims))
+	if (plans->energy && lattice_dims_equal(plans->dims, dims))
 		return BP_OK;
 	comparison_plans_free(plans);
 	plans->dims = dims;
@@ -49,7 +44,7 @@ bp_status comparison_measure(struct comparison_plans *plans, const struct lattic
 	bp_status status;
 
 	memset(&result, 0, sizeof result); /* padding too: rows travel between processes as bytes */
-	if (!dims_equal(a, b))
+	if (!lattice_dims_equal(a, b))
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
 		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d,
 		                 a.phi_d, b.theta_h, b.theta_d, b.phi_d);

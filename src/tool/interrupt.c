@@ -1,6 +1,7 @@
 #include "interrupt.h"
 
 #include "error.h"
+#include "report.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -38,3 +39,11 @@ bp_status interrupt_install(int *wake_fd, bp_error *error)
 }
 
 int interrupt_signal(void) { return noted; }
+
+bool interrupt_came(void) { return interrupt_signal() != 0; }
+
+int interrupt_exit(const char *output)
+{
+	report_text("%s: interrupted; not written", output);
+	return 128 + interrupt_signal();
+}

@@ -23,7 +23,6 @@ static int archived_load(struct material *material, char *name)
 	if (selection_entry(&selection, 0, &entry, &error) ||
 	    archive_entry_head(selection.archive, &entry, &material->head, &error) ||
 	    archive_entry_load(selection.archive, &entry, &material->head, 0, &material->model, &error) ||
-	    expansion_alloc(material->head.dims, &material->table, &error) ||
 	    model_expand(material->model, 0, &material->table, &error)) {
 		report_error(material->path, name, &error);
 		goto out;

@@ -1,7 +1,9 @@
 #include "options.h"
 
+#include "facts.h"
 #include "report.h"
 #include "usage.h"
+#include "workers.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -138,6 +140,39 @@ bool option_number(const struct command *command, const char *option, const char
 	}
 	*out = value;
 	return true;
+}
+
+bool option_jobs(const struct command *command, const char *text, unsigned *workers)
+{
+	int64_t count;
+	if (!option_integer(command, "-j", text, 1, WORKERS_MAX, &count))
+		return false;
+	*workers = (unsigned)count;
+	return true;
+}
+
+bool option_light(const struct command *command, const char *text, enum lighting *lighting)
+{
+	if (lighting_find(text, lighting))
+		return true;
+	report_usage(command, "--light: '%s' is none of key, env and point", text);
+	return false;
+}
+
+bool option_profile(const struct command *command, const char *text, enum profile *profile)
+{
+	if (profile_parse(text, profile))
+		return true;
+	report_usage(command, "--profile: '%s' is neither spectral nor paper", text);
+	return false;
+}
+
+bool option_output(const struct command *command, const char *output, const char *example)
+{
+	if (output && *output)
+		return true;
+	report_usage(command, "no output file; give one with -o %s", example);
+	return false;
 }
 
 bool option_picture(const struct command *command, const char *output, const char *other, bool *is_other)

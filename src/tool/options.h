@@ -16,6 +16,8 @@
 #include <stdint.h>
 
 #include "command.h"
+#include "model/fit.h"
+#include "render/lights.h"
 
 enum { OPTIONS_END = -1, OPTIONS_HELPED = -2, OPTIONS_WRONG = -3 };
 
@@ -39,6 +41,14 @@ bool option_integer(const struct command *command, const char *option, const cha
                     int64_t *out);
 bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most, int64_t *out);
 bool option_number(const struct command *command, const char *option, const char *text, double least, double most, double *out);
+
+/* The values of -j, --light and --profile; otherwise a usage message and false. */
+bool option_jobs(const struct command *command, const char *text, unsigned *workers);
+bool option_light(const struct command *command, const char *text, enum lighting *lighting);
+bool option_profile(const struct command *command, const char *text, enum profile *profile);
+
+/* Whether -o named a file; otherwise a usage message with `example` and false. */
+bool option_output(const struct command *command, const char *output, const char *example);
 
 /*
  * Checks what -o names, a picture: it ends in .png or in `other`, and *is_other tells which; otherwise a usage message and

@@ -103,3 +103,15 @@ bool selection_head(struct selection *selection, uint64_t n, struct index_entry 
 	report_error(selection->path, entry->name[0] ? entry->name : NULL, &error);
 	return false;
 }
+
+bool selection_dims(struct selection *selection, struct lattice_dims *dims)
+{
+	struct index_entry entry;
+	struct record_head head;
+	for (uint64_t n = 0; n < selection->count && selection_entry(selection, n, &entry, NULL) == BP_OK; n++)
+		if (archive_entry_head(selection->archive, &entry, &head, NULL) == BP_OK) {
+			*dims = head.dims;
+			return true;
+		}
+	return false;
+}

@@ -43,4 +43,7 @@ bp_status selection_entry(struct selection *selection, uint64_t n, struct index_
  */
 bool selection_head(struct selection *selection, uint64_t n, struct index_entry *entry, struct record_head *head);
 
+/* The extents of the first material whose head can be read; false where there is none. */
+bool selection_dims(struct selection *selection, struct lattice_dims *dims);
+
 #endif

@@ -193,7 +193,7 @@ double *viewer_table(const struct bp_archive *archive, double index, uint32_t la
 	double *values = NULL;
 	if (archive_model_load(archive, (uint64_t)index, layers, &model, &last) != BP_OK)
 		return NULL;
-	if (expansion_alloc(model->dims, &table, &last) == BP_OK && model_expand(model, 0, &table, &last) == BP_OK) {
+	if (model_expand(model, 0, &table, &last) == BP_OK) {
 		const size_t cells = lattice_cells(model->dims);
 		values = malloc(3 * cells * sizeof *values);
 		if (!values)

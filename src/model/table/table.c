@@ -168,7 +168,7 @@ bp_status table_build_model(const struct model *model, bool half, enum table_for
 {
 	const struct spectral_model *m = model->profile == PROFILE_SPECTRAL ? model->spectral : NULL;
 	struct lattice_dims dims = model->dims;
-	struct expansion expansion;
+	struct expansion expansion = {0};
 
 	if (half && !model_has_half(model->dims, &dims))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the extents %u x %u x %u have no halves", dims.theta_h,
@@ -176,10 +176,7 @@ bp_status table_build_model(const struct model *model, bool half, enum table_for
 	if (m && !m->coefficient[0] && form == TABLE_EXPANDED && (channels == 1 || channels == 3) && m->unit >= 0x1p-60 &&
 	    m->unit <= 0x1p60)
 		return codes_build(model, model->layer_count, dims, half, channels, out, error);
-	bp_status status = expansion_alloc(dims, &expansion, error);
-	if (status)
-		return status;
-	status = (half ? model_expand_half : model_expand)(model, 0, &expansion, error);
+	bp_status status = (half ? model_expand_half : model_expand)(model, 0, &expansion, error);
 	if (!status)
 		status = expansion_build(&expansion, half, form, channels, out, error);
 	expansion_free(&expansion);

@@ -1,10 +1,8 @@
 #include "tool/build/build.h"
 #include "tool/command.h"
 #include "tool/cores.h"
-#include "tool/facts.h"
 #include "tool/options.h"
 #include "tool/report.h"
-#include "tool/workers.h"
 
 #include <iconv.h>
 #include <stdlib.h>
@@ -95,13 +93,12 @@ static int build_main(const struct command *self, int argc, char **argv)
 		case OPTION_JSON: options.json = true; break;
 		case OPTION_ANY_LATTICE: options.any_lattice = true; break;
 		case 'j':
-			if (!option_integer(self, "-j", optarg, 1, WORKERS_MAX, &number))
+			if (!option_jobs(self, optarg, &options.workers))
 				return EXIT_USAGE;
-			options.workers = (unsigned)number;
 			break;
 		case OPTION_PROFILE:
-			if (!profile_parse(optarg, &options.fit.profile))
-				return report_usage(self, "--profile: '%s' is neither 'spectral' nor 'paper'", optarg);
+			if (!option_profile(self, optarg, &options.fit.profile))
+				return EXIT_USAGE;
 			break;
 		case OPTION_BUDGET:
 			if (!option_bytes(self, "--budget", optarg, BUDGET_LEAST, BUDGET_MOST, &number))
@@ -126,8 +123,8 @@ static int build_main(const struct command *self, int argc, char **argv)
 	}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (!options.output || !*options.output)
-		return report_usage(self, "no output file; give one with -o OUT.bpk");
+	if (!option_output(self, options.output, "OUT.bpk"))
+		return EXIT_USAGE;
 	if (optind >= argc)
 		return report_usage(self, "no input; give MERL files, folders, tar or zip files");
 	if (has_budget && options.fit.max_error > 0)

@@ -2,6 +2,7 @@
 #include "tool/cores.h"
 #include "tool/compare/compare.h"
 #include "tool/interrupt.h"
+#include "tool/measured.h"
 #include "tool/options.h"
 #include "tool/output_check.h"
 #include "tool/report.h"
@@ -28,25 +29,11 @@ struct compare {
 	struct source_list sources;
 	struct compare_item *items;
 	size_t count, printed, failed;
-	bool headed;         /* the table's head has been printed */
-	bool images_made;    /* the pictures' folder is ours */
-	const char **wanted; /* the items' names, sorted: for source_scan */
+	bool headed;        /* the table's head has been printed */
+	bool images_made;   /* the pictures' folder is ours */
+	const char **names; /* the items'; NULL where there is nothing to measure */
 	struct compare_job job;
 };
-
-static int names_ascending(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
-
-static bool name_wanted(void *user, const char *name)
-{
-	const struct compare *compare = user;
-	return bsearch(&name, compare->wanted, compare->count, sizeof *compare->wanted, names_ascending) != NULL;
-}
-
-static void notice_show(void *user, enum source_notice kind, const char *path, const char *reason)
-{
-	(void)user, (void)kind;
-	report_warning(path, NULL, "%s", reason);
-}
 
 /* The materials that are compared: index entries of the selection. */
 static bp_status items_read(struct compare *compare, bp_error *error)
@@ -54,14 +41,13 @@ static bp_status items_read(struct compare *compare, bp_error *error)
 	bp_status status = BP_OK;
 	compare->count = (size_t)compare->selection.count;
 	compare->items = calloc(compare->count + 1, sizeof *compare->items);
-	compare->wanted = calloc(compare->count + 1, sizeof *compare->wanted);
-	if (!compare->items || !compare->wanted)
+	compare->names = calloc(compare->count + 1, sizeof *compare->names);
+	if (!compare->items || !compare->names)
 		return error_memory(error, compare->count * sizeof *compare->items);
 	for (size_t n = 0; n < compare->count && status == BP_OK; n++) {
 		status = selection_entry(&compare->selection, n, &compare->items[n].entry, error);
-		compare->wanted[n] = compare->items[n].entry.name;
+		compare->names[n] = compare->items[n].entry.name;
 	}
-	qsort(compare->wanted, compare->count, sizeof *compare->wanted, names_ascending);
 	return status;
 }
 
@@ -75,13 +61,9 @@ static void item_fail(struct compare *compare, struct compare_item *item, const 
 /* Finds every item's measured file; those without one have failed. */
 static bp_status sources_find(struct compare *compare, bp_error *error)
 {
-	const char *inputs[1] = {compare->folder};
-	struct source_options options = {.notice = notice_show, .wanted = name_wanted, .user = compare};
-	bp_status status = source_scan(inputs, 1, &options, &compare->sources, error);
+	bp_status status = measured_find(compare->folder, compare->names, compare->count, &compare->sources, error);
 	if (status != BP_OK)
 		return status;
-	for (size_t s = 0; s < compare->sources.stream_count; s++)
-		report_warning(compare->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
 	for (size_t n = 0; n < compare->count; n++) {
 		struct compare_item *item = &compare->items[n];
 		item->source = source_list_find(&compare->sources, item->entry.name);
@@ -90,6 +72,7 @@ static bp_status sources_find(struct compare *compare, bp_error *error)
 		bp_error missing;
 		error_set(&missing, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s holds no measured file of that name", compare->folder);
 		item_fail(compare, item, &missing);
+		compare->names[n] = NULL;
 	}
 	return BP_OK;
 }
@@ -188,53 +171,19 @@ static void result_take(void *user, const struct job_result *result)
 	rows_print(compare);
 }
 
-/* Plans are made before the fork, so that the workers share their memory. */
-static bp_status plans_prepare(struct compare *compare, bp_error *error)
-{
-	struct record_head head;
-	for (size_t n = 0; n < compare->count; n++)
-		if (!compare->items[n].failed && !archive_entry_head(compare->selection.archive, &compare->items[n].entry, &head, NULL))
-			return comparison_plans_make(&compare->job.plans, head.dims, error);
-	return BP_OK;
-}
-
-/* No more processes than materials. */
-static unsigned worker_count(const struct compare *compare)
-{
-	size_t left = compare->count - compare->failed;
-	return left < compare->workers ? (unsigned)left : compare->workers;
-}
-
 static bp_status materials_measure(struct compare *compare, bp_error *error)
 {
-	struct workers *workers;
-	struct workers_options options = {.count = worker_count(compare),
-	                                  .work = compare_work,
-	                                  .work_user = &compare->job,
-	                                  .result = result_take,
-	                                  .result_user = compare};
+	const struct workers_options options = {.count = compare->workers,
+	                                        .work = compare_work,
+	                                        .work_user = &compare->job,
+	                                        .result = result_take,
+	                                        .result_user = compare};
+	struct lattice_dims dims;
 	compare->job.items = compare->items;
-	bp_status status = plans_prepare(compare, error);
-	if (status == BP_OK)
-		status = interrupt_install(&options.wake_fd, error);
-	if (status == BP_OK)
-		status = workers_start(&options, &workers, error);
-	if (status != BP_OK)
-		return status;
-	rows_print(compare);
-	for (size_t n = 0; n < compare->count && !interrupt_signal(); n++) {
-		if (compare->items[n].failed)
-			continue;
-		while (!workers_idle(workers) && !interrupt_signal())
-			workers_wait(workers, -1);
-		if (interrupt_signal())
-			break;
-		workers_submit(workers, &(struct job){.number = n, .name = compare->items[n].entry.name, .slot = -1});
-	}
-	while (workers_busy(workers) && !interrupt_signal())
-		workers_wait(workers, -1);
-	workers_stop(workers);
-	return BP_OK;
+	/* before the fork, so that the workers share the plans' memory */
+	bp_status status =
+		selection_dims(&compare->selection, &dims) ? comparison_plans_make(&compare->job.plans, dims, error) : BP_OK;
+	return status == BP_OK ? workers_run(&options, compare->names, compare->count, error) : status;
 }
 
 static void name_width_set(struct compare *compare)
@@ -284,14 +233,14 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	                                      {0}};
 	struct compare compare = {.workers = cores_usable(), .report.lightings = LIGHTINGS_ALL};
 	enum lighting lighting;
-	int64_t jobs, size = SPHERE_SIZE;
+	int64_t size = SPHERE_SIZE;
 	int option;
 
 	while ((option = options_next(self, argc, argv, "j:", names)) >= 0)
 		switch (option) {
 		case LIGHT:
-			if (!lighting_find(optarg, &lighting))
-				return report_usage(self, "--light: '%s' is none of key, env and point", optarg);
+			if (!option_light(self, optarg, &lighting))
+				return EXIT_USAGE;
 			compare.report.lightings = 1u << lighting;
 			break;
 		case SIZE:
@@ -302,9 +251,8 @@ static int compare_main(const struct command *self, int argc, char **argv)
 		case JSON: compare.report.json = true; break;
 		case IMAGES: compare.images = optarg; break;
 		case 'j':
-			if (!option_integer(self, "-j", optarg, 1, WORKERS_MAX, &jobs))
+			if (!option_jobs(self, optarg, &compare.workers))
 				return EXIT_USAGE;
-			compare.workers = (unsigned)jobs;
 			break;
 		}
 	if (option != OPTIONS_END)
@@ -331,7 +279,7 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	for (size_t n = 0; n < compare.count && compare.items; n++)
 		free(compare.items[n].error);
 	free(compare.items);
-	free(compare.wanted);
+	free(compare.names);
 	selection_close(&compare.selection);
 	return code;
 }

@@ -28,15 +28,10 @@ static void table_free(struct table *table)
 	*table = (struct table){.any_lattice = table->any_lattice};
 }
 
-static bool dims_equal(struct lattice_dims a, struct lattice_dims b)
-{
-	return a.theta_h == b.theta_h && a.theta_d == b.theta_d && a.phi_d == b.phi_d;
-}
-
 static bp_status table_fit(struct table *table, const struct model *model, bp_error *error)
 {
 	bp_status status;
-	if (table->below && dims_equal(table->expansion.dims, model->dims) && table->limit == model->horizon_limit)
+	if (table->below && lattice_dims_equal(table->expansion.dims, model->dims) && table->limit == model->horizon_limit)
 		return BP_OK;
 	table_free(table);
 	size_t cells = lattice_cells(model->dims);

@@ -23,8 +23,6 @@ static void files_allow(size_t count)
 	}
 }
 
-static bool stop(void) { return interrupt_signal() != 0; }
-
 static int merge_write(bp_archive **archives, char **paths, size_t count, const struct copy_options *options, bool quiet)
 {
 	struct copy_totals totals = {0};
@@ -37,13 +35,10 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 		report_error(totals.reading ? paths[failed] : options->output, NULL, &error);
 		return EXIT_FAILED;
 	}
-	if (totals.stopped) {
-		report_text("%s: interrupted; not written", options->output);
-		return 128 + interrupt_signal();
-	}
-	if (!quiet)
-		report_remark(options->output, &error);
+	if (totals.stopped)
+		return interrupt_exit(options->output);
 	if (!quiet) {
+		report_remark(options->output, &error);
 		printf("%s: %" PRIu64 " material%s", options->output, totals.copied, totals.copied == 1 ? "" : "s");
 		if (totals.replaced > 0)
 			printf(", %" PRIu64 " replaced by a later archive's", totals.replaced);
@@ -59,7 +54,7 @@ static int merge_main(const struct command *self, int argc, char **argv)
 		{"output", required_argument, NULL, 'o'},       {"quiet", no_argument, NULL, 'q'},
 		{"replace", no_argument, NULL, OPTION_REPLACE}, {"expect", required_argument, NULL, OPTION_EXPECT},
 		{"force", no_argument, NULL, OPTION_FORCE},     {0}};
-	struct copy_options options = {.stop = stop};
+	struct copy_options options = {.stop = interrupt_came};
 	bool quiet = false, force = false;
 	int64_t expected = 0;
 	int option, result = EXIT_FAILED;
@@ -76,8 +71,8 @@ static int merge_main(const struct command *self, int argc, char **argv)
 	}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (!options.output || !*options.output)
-		return report_usage(self, "no output file; give one with -o OUT.bpk");
+	if (!option_output(self, options.output, "OUT.bpk"))
+		return EXIT_USAGE;
 	if (optind >= argc)
 		return report_usage(self, "no archive");
 

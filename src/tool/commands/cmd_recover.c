@@ -29,8 +29,8 @@ static int recover_main(const struct command *self, int argc, char **argv)
 	}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (!output)
-		return report_usage(self, "-o OUT.bpk is missing");
+	if (!option_output(self, output, "OUT.bpk"))
+		return EXIT_USAGE;
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no archive" : "more than one archive");
 	if (!output_check(output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, 1))

@@ -87,8 +87,8 @@ static int render_main(const struct command *self, int argc, char **argv)
 		case 'o': options.output = optarg; break;
 		case FORCE: options.force = true; break;
 		case LIGHT:
-			if (!lighting_find(optarg, &options.lighting))
-				return report_usage(self, "--light: '%s' is none of key, env and point", optarg);
+			if (!option_light(self, optarg, &options.lighting))
+				return EXIT_USAGE;
 			break;
 		case SIZE:
 			if (!option_integer(self, "--size", optarg, 1, SPHERE_SIZE_MAX, &size))

@@ -4,7 +4,6 @@
 #include "tool/output_check.h"
 #include "tool/report.h"
 #include "tool/report_page/page.h"
-#include "tool/workers.h"
 
 #include "render/lights.h"
 
@@ -19,7 +18,6 @@ static int report_main(const struct command *self, int argc, char **argv)
 	struct page_options options = {.workers = cores_usable(), .lightings = (1u << LIGHTING_COUNT) - 1};
 	struct selection selection;
 	enum lighting lighting;
-	int64_t jobs;
 	bool force = false;
 	int option;
 
@@ -28,23 +26,22 @@ static int report_main(const struct command *self, int argc, char **argv)
 		case 'o': options.output = optarg; break;
 		case MEASURED: options.measured = optarg; break;
 		case LIGHT:
-			if (!lighting_find(optarg, &lighting))
-				return report_usage(self, "--light: '%s' is none of key, env and point", optarg);
+			if (!option_light(self, optarg, &lighting))
+				return EXIT_USAGE;
 			options.lightings = 1u << lighting;
 			break;
 		case EMBED: options.embed = true; break;
 		case FORCE: force = true; break;
 		case 'q': options.quiet = true; break;
 		case 'j':
-			if (!option_integer(self, "-j", optarg, 1, WORKERS_MAX, &jobs))
+			if (!option_jobs(self, optarg, &options.workers))
 				return EXIT_USAGE;
-			options.workers = (unsigned)jobs;
 			break;
 		}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (!options.output)
-		return report_usage(self, "no output: -o OUT.html is missing");
+	if (!option_output(self, options.output, "OUT.html"))
+		return EXIT_USAGE;
 	if (!text_ends_with(options.output, ".html"))
 		return report_usage(self, "-o: '%s' does not end in .html", options.output);
 	if (optind < argc && !output_check(options.output, OUTPUT_KIND_PAGE, force, (const char *const *)argv + optind, 1))

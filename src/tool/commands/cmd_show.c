@@ -74,8 +74,6 @@ static bp_status material_fit(struct show *show, const struct show_options *opti
 	struct material *material = &show->material;
 	bp_status status = model_fit(&material->lattice, &options->fit, &material->model, error);
 	if (status == BP_OK)
-		status = expansion_alloc(material->lattice.dims, &material->table, error);
-	if (status == BP_OK)
 		status = model_expand(material->model, 0, &material->table, error);
 	return status;
 }
@@ -95,7 +93,7 @@ static bp_status show_measure(struct show *show, bp_error *error)
 		return status;
 	}
 	struct lattice_dims a = show->truth->dims, b = material->table.dims;
-	if (a.theta_h != b.theta_h || a.theta_d != b.theta_d || a.phi_d != b.phi_d)
+	if (!lattice_dims_equal(a, b))
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
 		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d,
 		                 a.phi_d, b.theta_h, b.theta_d, b.phi_d);
@@ -183,8 +181,8 @@ static int show_main(const struct command *self, int argc, char **argv)
 			break;
 		case MEASURED: options.reference = optarg; break;
 		case PROFILE:
-			if (!profile_parse(optarg, &options.fit.profile))
-				return report_usage(self, "--profile: '%s' is neither spectral nor paper", optarg);
+			if (!option_profile(self, optarg, &options.fit.profile))
+				return EXIT_USAGE;
 			break;
 		}
 	if (option != OPTIONS_END)

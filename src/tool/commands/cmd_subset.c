@@ -29,8 +29,6 @@ struct subset {
 	uint64_t count;
 };
 
-static bool stop(void) { return interrupt_signal() != 0; }
-
 static int ascending(const void *a, const void *b)
 {
 	uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
@@ -125,15 +123,13 @@ static int subset_write(struct subset *subset)
 		report_error(totals.reading ? subset->path : subset->copy.output, NULL, &error);
 		return EXIT_FAILED;
 	}
-	if (totals.stopped) {
-		report_text("%s: interrupted; not written", subset->copy.output);
-		return 128 + interrupt_signal();
-	}
-	if (!subset->quiet)
+	if (totals.stopped)
+		return interrupt_exit(subset->copy.output);
+	if (!subset->quiet) {
 		report_remark(subset->copy.output, &error);
-	if (!subset->quiet)
 		printf("%s: %" PRIu64 " material%s, %" PRIu64 " of %" PRIu64 " bytes of their records\n", subset->copy.output,
 		       totals.copied, totals.copied == 1 ? "" : "s", totals.bytes_to, totals.bytes_from);
+	}
 	return subset->lacking ? EXIT_FAILED : EXIT_OK;
 }
 
@@ -170,7 +166,7 @@ static int subset_main(const struct command *self, int argc, char **argv)
 	                                      {"scene", required_argument, NULL, OPTION_SCENE},
 	                                      {"force", no_argument, NULL, OPTION_FORCE},
 	                                      {0}};
-	struct subset subset = {.copy = {.stop = stop}, .inputs = calloc((size_t)argc + 1, sizeof *subset.inputs)};
+	struct subset subset = {.copy = {.stop = interrupt_came}, .inputs = calloc((size_t)argc + 1, sizeof *subset.inputs)};
 	int option, result;
 
 	if (!subset.inputs) {
@@ -193,9 +189,10 @@ static int subset_main(const struct command *self, int argc, char **argv)
 	}
 	if (option != OPTIONS_END) {
 		result = options_exit_code(option);
-	} else if (!subset.copy.output || !*subset.copy.output || optind >= argc) {
-		result = report_usage(self, subset.copy.output && *subset.copy.output ? "no archive"
-		                                                                      : "no output file; give one with -o SCENE.bpk");
+	} else if (!option_output(self, subset.copy.output, "SCENE.bpk")) {
+		result = EXIT_USAGE;
+	} else if (optind >= argc) {
+		result = report_usage(self, "no archive");
 	} else {
 		subset.path = subset.inputs[0] = argv[optind];
 		result = subset_run(&subset, argv + optind + 1, argc - optind - 1);

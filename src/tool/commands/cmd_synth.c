@@ -3,7 +3,6 @@
 #include "tool/options.h"
 #include "tool/report.h"
 
-#include "error.h"
 #include "merl/demo.h"
 #include "merl/merl_file.h"
 

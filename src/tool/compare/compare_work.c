@@ -99,7 +99,6 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 	}
 	sha256_finish(&sha, digest);
 	if ((status = archive_entry_head(compare->archive, &item->entry, &head, error)) != BP_OK ||
-	    (status = expansion_alloc(head.dims, &table, error)) != BP_OK ||
 	    (status = decoded_load(compare, item, &head, 0, &table, error)) != BP_OK)
 		goto out;
 	result.record_bytes = head.record_bytes;

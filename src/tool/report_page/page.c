@@ -15,6 +15,7 @@
 #include "page_sections.h"
 #include "page_work.h"
 #include "tool/interrupt.h"
+#include "tool/measured.h"
 #include "tool/progress.h"
 #include "tool/report.h"
 
@@ -25,52 +26,41 @@ enum { SIZE_DETAILS = SPHERE_SIZE, SIZE_SHEET = 40, EMBED_BYTES_MAX = 512 << 20,
 struct making {
 	struct page page;
 	struct page_item *items;
+	const char **names; /* the items' */
 	struct source_list sources;
 	struct page_job job;
 };
-
-static bool name_wanted(void *user, const char *name)
-{
-	uint64_t index;
-	return bp_archive_find(((const struct making *)user)->page.selection->archive, name, &index, NULL) == BP_OK;
-}
-
-static void notice_show(void *user, enum source_notice kind, const char *path, const char *reason)
-{
-	(void)user, (void)kind;
-	report_warning(path, NULL, "%s", reason);
-}
 
 static bp_status items_read(struct making *making, bp_error *error)
 {
 	struct page *page = &making->page;
 	page->count = (size_t)page->selection->count;
 	making->items = calloc(page->count + 1, sizeof *making->items);
+	making->names = calloc(page->count + 1, sizeof *making->names);
 	page->outcomes = calloc(page->count + 1, sizeof *page->outcomes);
 	page->items = making->items;
-	if (!making->items || !page->outcomes)
+	if (!making->items || !making->names || !page->outcomes)
 		return error_memory(error, page->count * sizeof *making->items);
-	for (size_t n = 0; n < page->count; n++)
+	for (size_t n = 0; n < page->count; n++) {
+		making->names[n] = making->items[n].entry.name;
 		if (selection_entry(page->selection, n, &making->items[n].entry, error) !=
 		    BP_OK) { /* the index is damaged: those before are shown */
 			report_error(page->selection->path, NULL, error);
 			page->selection->incomplete = true;
 			page->count = n;
 		}
+	}
 	return BP_OK;
 }
 
 static bp_status sources_find(struct making *making, bp_error *error)
 {
-	const struct source_options options = {.notice = notice_show, .wanted = name_wanted, .user = making};
-	const char *folder = making->page.options->measured;
-	if (!folder)
+	const struct page *page = &making->page;
+	if (!page->options->measured)
 		return BP_OK;
-	bp_status status = source_scan(&folder, 1, &options, &making->sources, error);
-	for (size_t n = 0; status == BP_OK && n < making->page.count; n++)
+	bp_status status = measured_find(page->options->measured, making->names, page->count, &making->sources, error);
+	for (size_t n = 0; status == BP_OK && n < page->count; n++)
 		making->items[n].source = source_list_find(&making->sources, making->items[n].entry.name);
-	for (size_t s = 0; status == BP_OK && s < making->sources.stream_count; s++)
-		report_warning(making->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
 	return status;
 }
 
@@ -181,54 +171,26 @@ static void result_take(void *user, const struct job_result *result)
 	progress_show(page->done, page->count, (double)page->done / (double)page->count);
 }
 
-/* Plans are made before the fork, so that the workers share their memory. */
-static bp_status plans_prepare(struct making *making, bp_error *error)
-{
-	const struct page *page = &making->page;
-	struct record_head head;
-	for (size_t n = 0; n < page->count; n++)
-		if (archive_entry_head(page->selection->archive, &making->items[n].entry, &head, NULL) == BP_OK)
-			return comparison_plans_make(&making->job.plans, head.dims, error);
-	return BP_OK;
-}
-
 static bp_status materials_draw(struct making *making, bp_error *error)
 {
 	struct page *page = &making->page;
 	const struct page_options *options = page->options;
-	struct workers *workers;
 	making->job =
 		(struct page_job){.archive = page->selection->archive,
 	                      .items = making->items,
 	                      .details = page->details,
 	                      .measured = options->measured != NULL,
 	                      .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
-	struct workers_options pool = {.count = page->count < options->workers ? (unsigned)page->count : options->workers,
-	                               .work = page_work,
-	                               .work_user = &making->job,
-	                               .result = result_take,
-	                               .result_user = page};
-	if (page->count == 0)
-		return BP_OK;
-	bp_status status = plans_prepare(making, error);
-	if (status == BP_OK)
-		status = interrupt_install(&pool.wake_fd, error);
-	if (status == BP_OK)
-		status = workers_start(&pool, &workers, error);
-	if (status != BP_OK)
-		return status;
+	const struct workers_options pool = {
+		.count = options->workers, .work = page_work, .work_user = &making->job, .result = result_take, .result_user = page};
+	struct lattice_dims dims;
+	/* before the fork, so that the workers share the plans' memory */
+	bp_status status = selection_dims(page->selection, &dims) ? comparison_plans_make(&making->job.plans, dims, error) : BP_OK;
 	progress_start(!options->quiet);
-	for (size_t n = 0; n < page->count && !interrupt_signal(); n++) {
-		while (!workers_idle(workers) && !interrupt_signal())
-			workers_wait(workers, -1);
-		if (!interrupt_signal())
-			workers_submit(workers, &(struct job){.number = n, .name = making->items[n].entry.name, .slot = -1});
-	}
-	while (workers_busy(workers) && !interrupt_signal())
-		workers_wait(workers, -1);
-	workers_stop(workers);
+	if (status == BP_OK)
+		status = workers_run(&pool, making->names, page->count, error);
 	progress_stop();
-	return BP_OK;
+	return status;
 }
 
 static bp_status archive_embed(FILE *out, const struct page *page, bp_error *error)
@@ -298,6 +260,7 @@ static void making_free(struct making *making)
 	}
 	free(page->outcomes);
 	free(making->items);
+	free(making->names);
 	free(page->viewer);
 	byte_buffer_free(&page->verify);
 	source_list_free(&making->sources);
@@ -327,14 +290,13 @@ int page_run(const struct page_options *options, struct selection *selection)
 		bp_archive_verify(selection->archive, 0, problem_note, page, NULL);
 		status = materials_draw(&making, &error);
 	}
-	if (interrupt_signal())
-		report_text("%s: interrupted; not written", options->output);
-	else if (status == BP_OK)
+	const bool stopped = interrupt_came();
+	if (status == BP_OK && !stopped)
 		status = page_write(page, &output, &error);
-	if (!interrupt_signal() && status != BP_OK)
+	if (status != BP_OK && !stopped)
 		report_error(NULL, NULL, &error);
 	output_file_discard(&output.file);
 	const bool whole = status == BP_OK && !page->failed && !page->problem_count && !selection->incomplete;
 	making_free(&making);
-	return interrupt_signal() ? 128 + interrupt_signal() : whole ? EXIT_OK : EXIT_FAILED;
+	return stopped ? interrupt_exit(options->output) : whole ? EXIT_OK : EXIT_FAILED;
 }

@@ -48,8 +48,6 @@ static bp_status decoded_load(const struct page_job *job, struct subject *subjec
 	if (status == BP_OK)
 		status = archive_entry_load(job->archive, &subject->item->entry, &subject->head, 0, &subject->model, error);
 	if (status == BP_OK)
-		status = expansion_alloc(subject->head.dims, &subject->table, error);
-	if (status == BP_OK)
 		status = model_expand(subject->model, 0, &subject->table, error);
 	return status;
 }
