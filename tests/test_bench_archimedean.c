@@ -162,7 +162,7 @@ static void recovers(enum archimedean_family family, const struct own own[3])
 			lattice.rgb[c][cell] = table.unit * (double)table.rgb[c][cell];
 		lattice.valid[cell] = 1;
 	}
-	assert_int_equal(BASELINE_ARCHIMEDEAN.fit(&material, 0, &state, NULL), BP_OK);
+	assert_int_equal(BASELINE_ARCHIMEDEAN.fit(&BASELINE_ARCHIMEDEAN, &material, &state, NULL), BP_OK);
 	found = state;
 	for (int c = 0; c < 3; c++) {
 		const double scale = (double)truth->channel[c].scale;

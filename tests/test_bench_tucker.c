@@ -92,13 +92,13 @@ static void a_tensor_of_two_terms_is_recovered(void **unused)
 static void the_table_comes_back_and_holes_are_ignored(void **unused)
 {
 	struct lattice lattice = make_table();
-	const struct bench_material material = {.name = "two-terms", .lattice = &lattice};
+	const struct bench_material material = {.name = "two-terms", .lattice = &lattice, .budget_bytes = 4000};
 	struct expansion table;
 	void *state;
 	(void)unused;
 
 	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
-	assert_int_equal(BASELINE_TUCKER.fit(&material, 4000, &state, NULL), BP_OK);
+	assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &state, NULL), BP_OK);
 	assert_int_equal(BASELINE_TUCKER.expand(state, &table, NULL), BP_OK);
 	for (uint32_t i = 0; i < SMALL.theta_h; i++)
 		for (uint32_t k = 0; k < SMALL.phi_d; k++) {
@@ -120,12 +120,12 @@ static void an_evaluation_at_a_centre_gives_the_tables_value(void **unused)
 	const double wi[3] = {cos(h) * a + sin(h) * c, b, cos(h) * c - sin(h) * a};
 	const double wo[3] = {-cos(h) * a + sin(h) * c, -b, cos(h) * c + sin(h) * a};
 	struct lattice lattice = make_table();
-	const struct bench_material material = {.name = "two-terms", .lattice = &lattice};
+	const struct bench_material material = {.name = "two-terms", .lattice = &lattice, .budget_bytes = 4000};
 	double rgb[3];
 	void *state;
 	(void)unused;
 
-	assert_int_equal(BASELINE_TUCKER.fit(&material, 4000, &state, NULL), BP_OK);
+	assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &state, NULL), BP_OK);
 	BASELINE_TUCKER.evaluate(state, wi, wo, rgb);
 	for (int q = 0; q < 3; q++) {
 		double expected = lattice.rgb[q][lattice_index(SMALL, 12, 6, 8)];
@@ -139,7 +139,7 @@ static void an_evaluation_at_a_centre_gives_the_tables_value(void **unused)
 static void the_size_follows_the_budget(void **unused)
 {
 	struct lattice lattice = make_table();
-	const struct bench_material material = {.name = "noise", .lattice = &lattice};
+	struct bench_material material = {.name = "noise", .lattice = &lattice};
 	uint32_t random = 1;
 	(void)unused;
 
@@ -150,7 +150,8 @@ static void the_size_follows_the_budget(void **unused)
 	for (size_t budget = 1000; budget <= 8000; budget *= 2) {
 		size_t term = (24 + 20 + 32 + 3) * 4;
 		void *state;
-		assert_int_equal(BASELINE_TUCKER.fit(&material, budget, &state, NULL), BP_OK);
+		material.budget_bytes = budget;
+		assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &state, NULL), BP_OK);
 		assert_int_equal(BASELINE_TUCKER.bytes(state), budget / term * term);
 		BASELINE_TUCKER.free_state(state);
 	}

@@ -6,7 +6,7 @@
 #include "environment.h"
 #include "error.h"
 
-enum { CHANNELS = 3, BUDGET_USUAL = 60400, EFFORT_USUAL = 5, EFFORT_MOST = 9 };
+enum { CHANNELS = 3, EFFORT_MOST = 9 };
 #define ERROR_LEAST 1e-6
 #define ERROR_MOST 10.0
 

@@ -253,7 +253,7 @@ static void fit_channel(struct search *search, struct archimedean_channel *chann
 	channel->diffuse = (float)(search->diffuse * unit);
 }
 
-bp_status archimedean_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error)
+bp_status archimedean_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
 {
 	const struct lattice *lattice = material->lattice;
 	const size_t cells = lattice_cells(lattice->dims);
@@ -265,7 +265,7 @@ bp_status archimedean_fit(const struct bench_material *material, size_t budget_b
 	struct axis_means *means = malloc(sizeof *means);
 	bp_status status;
 
-	(void)budget_bytes;
+	(void)self;
 	gsl_set_error_handler_off();
 	if (!source || !search || !means) {
 		status = error_memory(error, cells * sizeof *source + sizeof *search + sizeof *means);

@@ -12,26 +12,26 @@
 
 #include "merl/lattice.h"
 
-/* One measured material as the benchmark holds it. */
+/* One measured material as the benchmark holds it, and what a fit of it may spend. */
 struct bench_material {
 	const char *name;
 	const struct lattice *lattice;
 	const uint8_t *raw; /* the file's bytes, for the lossless codecs; NULL: the planes are coded instead */
 	size_t raw_bytes;
+	size_t budget_bytes; /* 0 for those that are not budgeted */
+	int effort;          /* 1..9, for those that know efforts */
 };
 
 struct baseline {
 	const char *name;      /* one word, the row's key in the table */
 	const char *reference; /* author and year, or library */
 	bool budgeted;         /* true: fit aims at the budget; false: its size is its own */
+	const void *variant;   /* fit's own: which of several methods this is */
 
 	/* *state is for expand, evaluate, ... and is released with free_state. */
-	bp_status (*fit)(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error);
-	/* The same with an effort of 1 to 9; NULL: it knows of no effort. */
-	bp_status (*fit_effort)(const struct bench_material *material, size_t budget_bytes, int effort, void **state,
-	                        bp_error *error);
+	bp_status (*fit)(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error);
 	size_t (*bytes)(const void *state);
-	size_t (*parameters)(const void *state); /* numbers stored; 0 where the state is a codec's bytes */
+	size_t (*parameters)(const void *state); /* numbers stored; NULL where the state is a codec's bytes */
 
 	/* Fills the whole table; the caller has allocated it with the material's dims. Every value is finite and >= 0. */
 	bp_status (*expand)(const void *state, struct expansion *out, bp_error *error);

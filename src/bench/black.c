@@ -4,10 +4,10 @@
 
 #include "baseline.h"
 
-static bp_status black_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+static bp_status black_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
 {
+	(void)self;
 	(void)material;
-	(void)budget_bytes;
 	(void)error;
 	*state = NULL;
 	return BP_OK;

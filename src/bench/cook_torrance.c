@@ -37,37 +37,7 @@ const struct lobe_model LOBE_COOK_TORRANCE = {
 	.value = cook_torrance_value,
 };
 
-static bp_status cook_torrance_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return lobe_fit(&LOBE_COOK_TORRANCE, material->lattice, LOBE_COSINE, state, error);
-}
-
-static bp_status cook_torrance_fit_relative(const struct bench_material *material, size_t budget_bytes, void **state,
-                                            bp_error *error)
-{
-	(void)budget_bytes;
-	return lobe_fit(&LOBE_COOK_TORRANCE, material->lattice, LOBE_RELATIVE, state, error);
-}
-
-const struct baseline BASELINE_COOK_TORRANCE = {
-	.name = "cook-torrance",
-	.reference = "Cook and Torrance 1981",
-	.fit = cook_torrance_fit,
-	.bytes = lobe_bytes,
-	.parameters = lobe_parameters,
-	.expand = lobe_expand,
-	.evaluate = lobe_evaluate,
-	.free_state = free,
-};
-
-const struct baseline BASELINE_COOK_TORRANCE_RELATIVE = {
-	.name = "cook-torrance-relative",
-	.reference = "Cook and Torrance 1981; relative error",
-	.fit = cook_torrance_fit_relative,
-	.bytes = lobe_bytes,
-	.parameters = lobe_parameters,
-	.expand = lobe_expand,
-	.evaluate = lobe_evaluate,
-	.free_state = free,
-};
+const struct baseline BASELINE_COOK_TORRANCE =
+	LOBE_BASELINE("cook-torrance", "Cook and Torrance 1981", LOBE_COOK_TORRANCE, LOBE_COSINE);
+const struct baseline BASELINE_COOK_TORRANCE_RELATIVE =
+	LOBE_BASELINE("cook-torrance-relative", "Cook and Torrance 1981; relative error", LOBE_COOK_TORRANCE, LOBE_RELATIVE);

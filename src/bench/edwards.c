@@ -37,36 +37,7 @@ const struct lobe_model LOBE_EDWARDS = {
 	.value = edwards_value,
 };
 
-static bp_status edwards_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return lobe_fit(&LOBE_EDWARDS, material->lattice, LOBE_COSINE, state, error);
-}
-
-static bp_status edwards_fit_relative(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return lobe_fit(&LOBE_EDWARDS, material->lattice, LOBE_RELATIVE, state, error);
-}
-
-const struct baseline BASELINE_EDWARDS = {
-	.name = "edwards",
-	.reference = "Edwards et al. 2006, data-fitting model",
-	.fit = edwards_fit,
-	.bytes = lobe_bytes,
-	.parameters = lobe_parameters,
-	.expand = lobe_expand,
-	.evaluate = lobe_evaluate,
-	.free_state = free,
-};
-
-const struct baseline BASELINE_EDWARDS_RELATIVE = {
-	.name = "edwards-relative",
-	.reference = "Edwards et al. 2006, data-fitting model; relative error",
-	.fit = edwards_fit_relative,
-	.bytes = lobe_bytes,
-	.parameters = lobe_parameters,
-	.expand = lobe_expand,
-	.evaluate = lobe_evaluate,
-	.free_state = free,
-};
+const struct baseline BASELINE_EDWARDS =
+	LOBE_BASELINE("edwards", "Edwards et al. 2006, data-fitting model", LOBE_EDWARDS, LOBE_COSINE);
+const struct baseline BASELINE_EDWARDS_RELATIVE =
+	LOBE_BASELINE("edwards-relative", "Edwards et al. 2006, data-fitting model; relative error", LOBE_EDWARDS, LOBE_RELATIVE);

@@ -199,6 +199,12 @@ out:
 	return status;
 }
 
+bp_status lobe_fit_variant(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
+{
+	const struct lobe_variant *variant = self->variant;
+	return lobe_fit(variant->model, material->lattice, variant->objective, state, error);
+}
+
 size_t lobe_parameters(const void *state) { return 6 + (size_t)((const struct lobe_state *)state)->model->shape_count; }
 
 size_t lobe_bytes(const void *state) { return lobe_parameters(state) * sizeof(float); }

@@ -59,10 +59,24 @@ enum lobe_objective { LOBE_COSINE, LOBE_RELATIVE };
 
 bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective objective, void **state,
                    bp_error *error);
+
+/* The same as a baseline's function, of a baseline whose variant is this. */
+struct lobe_variant {
+	const struct lobe_model *model;
+	enum lobe_objective objective;
+};
+bp_status lobe_fit_variant(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error);
 size_t lobe_bytes(const void *state);
 size_t lobe_parameters(const void *state);
 bp_status lobe_expand(const void *state, struct expansion *out, bp_error *error);
 void lobe_evaluate(const void *state, const double wi[3], const double wo[3], double rgb[3]);
+
+#define LOBE_BASELINE(method, text, lobe_model, lobe_objective) \
+	{ \
+		.name = method, .reference = text, .variant = &(const struct lobe_variant){&lobe_model, lobe_objective}, \
+		.fit = lobe_fit_variant, .bytes = lobe_bytes, .parameters = lobe_parameters, .expand = lobe_expand, \
+		.evaluate = lobe_evaluate, .free_state = free \
+	}
 
 /* The models' lobes, for the tests. */
 extern const struct lobe_model LOBE_WARD, LOBE_COOK_TORRANCE, LOBE_EDWARDS;

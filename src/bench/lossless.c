@@ -88,8 +88,9 @@ static void lossless_free(void *opaque)
 	free(state);
 }
 
-static bp_status fit_with(const struct codec *codec, const struct bench_material *material, void **out, bp_error *error)
+static bp_status lossless_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
 {
+	const struct codec *codec = self->variant;
 	const size_t cells = lattice_cells(material->lattice->dims);
 	struct lossless_state *state = calloc(1, sizeof *state);
 	uint8_t *planes = NULL;
@@ -130,31 +131,7 @@ out:
 	return status;
 }
 
-static bp_status zlib_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return fit_with(&ZLIB, material, state, error);
-}
-
-static bp_status zstd_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return fit_with(&ZSTD, material, state, error);
-}
-
-static bp_status xz_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return fit_with(&XZ, material, state, error);
-}
-
 static size_t lossless_bytes(const void *state) { return ((const struct lossless_state *)state)->bytes; }
-
-static size_t lossless_parameters(const void *state)
-{
-	(void)state;
-	return 0;
-}
 
 /* Invalid cells become 0. */
 static bp_status lossless_expand(const void *opaque, struct expansion *out, bp_error *error)
@@ -182,12 +159,12 @@ out:
 	return status;
 }
 
-#define LOSSLESS(codec_name, text, codec_fit) \
+#define LOSSLESS(codec_name, text, codec) \
 	{ \
-		.name = codec_name, .reference = text, .fit = codec_fit, .bytes = lossless_bytes, .parameters = lossless_parameters, \
+		.name = codec_name, .reference = text, .variant = &codec, .fit = lossless_fit, .bytes = lossless_bytes, \
 		.expand = lossless_expand, .free_state = lossless_free \
 	}
 
-const struct baseline BASELINE_ZLIB = LOSSLESS("zlib", "zlib " ZLIB_VERSION ", level 6, lossless", zlib_fit);
-const struct baseline BASELINE_ZSTD = LOSSLESS("zstd", "zstd " ZSTD_VERSION_STRING ", level 9, lossless", zstd_fit);
-const struct baseline BASELINE_XZ = LOSSLESS("xz", "xz " LZMA_VERSION_STRING ", preset 0, lossless", xz_fit);
+const struct baseline BASELINE_ZLIB = LOSSLESS("zlib", "zlib " ZLIB_VERSION ", level 6, lossless", ZLIB);
+const struct baseline BASELINE_ZSTD = LOSSLESS("zstd", "zstd " ZSTD_VERSION_STRING ", level 9, lossless", ZSTD);
+const struct baseline BASELINE_XZ = LOSSLESS("xz", "xz " LZMA_VERSION_STRING ", preset 0, lossless", XZ);

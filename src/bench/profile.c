@@ -31,12 +31,11 @@ static void profile_free(void *opaque)
 	free(state);
 }
 
-enum { EFFORT_USUAL = 5 };
-
-static bp_status fit_profile(enum profile profile, const struct bench_material *material, size_t budget_bytes, int effort,
-                             void **out, bp_error *error)
+static bp_status profile_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
 {
-	const struct fit_options options = {.profile = profile, .budget_bytes = (uint32_t)budget_bytes, .effort = effort};
+	const struct fit_options options = {.profile = *(const enum profile *)self->variant,
+	                                    .budget_bytes = (uint32_t)material->budget_bytes,
+	                                    .effort = material->effort};
 	const struct record_source source = {.bytes = material->raw_bytes};
 	struct profile_state *state = calloc(1, sizeof *state);
 	bp_status status;
@@ -52,29 +51,7 @@ static bp_status fit_profile(enum profile profile, const struct bench_material *
 	return status;
 }
 
-static bp_status paper_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	return fit_profile(PROFILE_PAPER, material, budget_bytes, EFFORT_USUAL, state, error);
-}
-
-static bp_status spectral_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	return fit_profile(PROFILE_SPECTRAL, material, budget_bytes, EFFORT_USUAL, state, error);
-}
-
-static bp_status spectral_fit_effort(const struct bench_material *material, size_t budget_bytes, int effort, void **state,
-                                     bp_error *error)
-{
-	return fit_profile(PROFILE_SPECTRAL, material, budget_bytes, effort, state, error);
-}
-
 static size_t profile_bytes(const void *state) { return ((const struct profile_state *)state)->bytes; }
-
-static size_t profile_parameters(const void *state)
-{
-	(void)state;
-	return 0;
-}
 
 static bp_status profile_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
@@ -110,21 +87,18 @@ static void profile_evaluate(const void *opaque, const double wi[3], const doubl
 }
 
 /* What both profiles have in common. */
-#define PROFILE_BASELINE \
-	.budgeted = true, .bytes = profile_bytes, .parameters = profile_parameters, .expand = profile_expand, \
-	.prepare = profile_prepare, .evaluate = profile_evaluate, .free_state = profile_free
+#define PROFILE_BASELINE(number) \
+	.variant = &(const enum profile){number}, .budgeted = true, .fit = profile_fit, .bytes = profile_bytes, \
+	.expand = profile_expand, .prepare = profile_prepare, .evaluate = profile_evaluate, .free_state = profile_free
 
 const struct baseline BASELINE_PAPER = {
 	.name = "paper",
 	.reference = "this project, --profile paper: Bilgili et al. 2012, pair copulas and wavelets",
-	.fit = paper_fit,
-	PROFILE_BASELINE,
+	PROFILE_BASELINE(PROFILE_PAPER),
 };
 
 const struct baseline BASELINE_SPECTRAL = {
 	.name = "spectral",
 	.reference = "this project, the spectral profile",
-	.fit = spectral_fit,
-	.fit_effort = spectral_fit_effort,
-	PROFILE_BASELINE,
+	PROFILE_BASELINE(PROFILE_SPECTRAL),
 };

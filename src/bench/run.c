@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "model/fit.h"
 #include "merl/merl_file.h"
 #include "timing.h"
 
@@ -29,15 +30,7 @@ static struct row empty_row(int material, int method)
 	return row;
 }
 
-static bp_status fit(const struct baseline *method, const struct bench_material *material, const struct row *row, void **state,
-                     bp_error *error)
-{
-	if (row->effort > 0)
-		return method->fit_effort(material, (size_t)row->budget, (int)row->effort, state, error);
-	return method->fit(material, (size_t)row->budget, state, error);
-}
-
-/* One method at one budget (0: none) and effort (0: the usual). */
+/* One method at the material's budget and effort. */
 static bp_status run_method(struct run *run, const struct bench_material *material, const struct figure_reference *reference,
                             const struct baseline *method, struct row *row, struct expansion *table, bp_error *error)
 {
@@ -51,13 +44,13 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 		if (state)
 			method->free_state(state);
 		state = NULL;
-		if ((status = fit(method, material, row, &state, error)))
+		if ((status = method->fit(method, material, &state, error)))
 			return status;
 		seconds[count++] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 	} while (!run->quick && count < REPEATS && seconds[0] < SHORT_SECONDS);
 	row->fit_seconds = median_of(seconds, count);
 	row->bytes = (double)method->bytes(state);
-	row->parameters = (double)method->parameters(state);
+	row->parameters = method->parameters ? (double)method->parameters(state) : 0;
 	count = 0;
 	do {
 		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
@@ -90,8 +83,11 @@ static void climb(struct run *run, const struct bench_material *material, const 
 		bp_error error;
 		if (method->efforts)
 			row.effort = run->efforts[n];
-		row.budget = method->efforts ? EFFORTS_BUDGET : method->baseline->budgeted ? run->budgets[n] : 0;
-		bp_status status = run_method(run, material, reference, method->baseline, &row, table, &error);
+		row.budget = method->efforts ? BUDGET_USUAL : method->baseline->budgeted ? run->budgets[n] : 0;
+		struct bench_material asked = *material;
+		asked.budget_bytes = (size_t)row.budget;
+		asked.effort = method->efforts ? (int)row.effort : EFFORT_USUAL;
+		bp_status status = run_method(run, &asked, reference, method->baseline, &row, table, &error);
 		if (!status)
 			fwrite(&row, sizeof row, 1, run->rows);
 		else if (status == BP_ERROR_LIMIT || status == BP_ERROR_UNSUPPORTED ||
@@ -180,7 +176,7 @@ static void run_material(struct run *run, int at)
 		goto out;
 	}
 	run_yardsticks(run, at, name, &lattice);
-	const struct bench_material material = {name, &lattice, raw, raw_bytes};
+	const struct bench_material material = {.name = name, .lattice = &lattice, .raw = raw, .raw_bytes = raw_bytes};
 	for (int m = 0; m < METHOD_FITS; m++)
 		if (run->method_on[m])
 			climb(run, &material, &reference, at, m, &table);

@@ -177,13 +177,14 @@ void tucker_free(void *opaque)
 
 static size_t floats_per_term(struct lattice_dims dims) { return (size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3; }
 
-static bp_status tucker_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
+static bp_status tucker_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
 {
-	size_t terms = budget_bytes / (floats_per_term(material->lattice->dims) * sizeof(float));
+	size_t terms = material->budget_bytes / (floats_per_term(material->lattice->dims) * sizeof(float));
 	struct tucker_state *out;
 	struct log_tensor tensor;
 	bp_status status = log_tensor_make(material->lattice, &tensor, error);
 
+	(void)self;
 	if (status)
 		return status;
 	status = tucker_decompose(&tensor, terms ? (uint32_t)terms : 1, &out, error);

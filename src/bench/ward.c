@@ -22,36 +22,6 @@ const struct lobe_model LOBE_WARD = {
 	.value = ward_value,
 };
 
-static bp_status ward_fit(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return lobe_fit(&LOBE_WARD, material->lattice, LOBE_COSINE, state, error);
-}
-
-static bp_status ward_fit_relative(const struct bench_material *material, size_t budget_bytes, void **state, bp_error *error)
-{
-	(void)budget_bytes;
-	return lobe_fit(&LOBE_WARD, material->lattice, LOBE_RELATIVE, state, error);
-}
-
-const struct baseline BASELINE_WARD = {
-	.name = "ward",
-	.reference = "Ward 1992, isotropic",
-	.fit = ward_fit,
-	.bytes = lobe_bytes,
-	.parameters = lobe_parameters,
-	.expand = lobe_expand,
-	.evaluate = lobe_evaluate,
-	.free_state = free,
-};
-
-const struct baseline BASELINE_WARD_RELATIVE = {
-	.name = "ward-relative",
-	.reference = "Ward 1992, isotropic; relative error",
-	.fit = ward_fit_relative,
-	.bytes = lobe_bytes,
-	.parameters = lobe_parameters,
-	.expand = lobe_expand,
-	.evaluate = lobe_evaluate,
-	.free_state = free,
-};
+const struct baseline BASELINE_WARD = LOBE_BASELINE("ward", "Ward 1992, isotropic", LOBE_WARD, LOBE_COSINE);
+const struct baseline BASELINE_WARD_RELATIVE =
+	LOBE_BASELINE("ward-relative", "Ward 1992, isotropic; relative error", LOBE_WARD, LOBE_RELATIVE);

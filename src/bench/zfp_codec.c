@@ -94,15 +94,17 @@ static size_t total_size(const struct log_tensor *tensor, int exponent, uint8_t 
 	return sum;
 }
 
-static bp_status zfp_fit(const struct bench_material *material, size_t budget_bytes, void **out, bp_error *error)
+static bp_status zfp_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
 {
 	struct log_tensor tensor = {0};
 	struct zfp_state *state = calloc(1, sizeof *state);
 	uint8_t *scratch = NULL;
+	const double budget = (double)material->budget_bytes;
 	size_t capacity, high, low;
 	int below = EXPONENT_MIN, above = EXPONENT_MAX;
 	bp_status status;
 
+	(void)self;
 	if (!state)
 		return error_memory(error, sizeof *state);
 	if ((status = log_tensor_make(material->lattice, &tensor, error)))
@@ -118,14 +120,14 @@ static bp_status zfp_fit(const struct bench_material *material, size_t budget_by
 	/* size falls as the exponent grows: size(below) > budget >= size(above), where the range allows */
 	while (above - below > 1) {
 		int middle = (above + below + 2 * 64) / 2 - 64; /* rounds down for negative sums too */
-		if (total_size(&tensor, middle, scratch, capacity) > budget_bytes)
+		if (total_size(&tensor, middle, scratch, capacity) > material->budget_bytes)
 			below = middle;
 		else
 			above = middle;
 	}
 	high = total_size(&tensor, below, scratch, capacity);
 	low = total_size(&tensor, above, scratch, capacity);
-	state->exponent = (double)high / (double)budget_bytes < (double)budget_bytes / (double)low ? below : above;
+	state->exponent = (double)high / budget < budget / (double)low ? below : above;
 	for (int c = 0; c < 3; c++) {
 		state->bytes[c] = run_plane(tensor.dims, tensor.plane[c], state->exponent, scratch, capacity, false);
 		/* the decoder may read a word past the end */
@@ -152,12 +154,6 @@ static size_t zfp_bytes(const void *opaque)
 	return state->bytes[0] + state->bytes[1] + state->bytes[2];
 }
 
-static size_t zfp_parameters(const void *state)
-{
-	(void)state;
-	return 0;
-}
-
 static bp_status zfp_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
 	const struct zfp_state *state = opaque;
@@ -182,7 +178,6 @@ const struct baseline BASELINE_ZFP = {
 	.budgeted = true,
 	.fit = zfp_fit,
 	.bytes = zfp_bytes,
-	.parameters = zfp_parameters,
 	.expand = zfp_expand,
 	.free_state = zfp_state_free,
 };

@@ -80,8 +80,6 @@ static double last_error(const struct packed *packed)
 	return packed->head.layers[packed->head.layer_count - 1].fidelity.log_rmse;
 }
 
-enum { SEARCH_START = 60400 }; /* bytes */
-
 /* What a search for a size knows: sizes that do not satisfy end at `low`, the smallest that does is `high`, 0 for none. */
 struct bracket {
 	uint32_t low, high;
@@ -114,7 +112,7 @@ static uint32_t bracket_next(const struct bracket *b, double max_error)
 static bp_status record_search(const struct packing *packing, double max_error, struct packed *best, bp_error *error)
 {
 	struct bracket bracket = {.low = RECORD_BUDGET_MIN - 1};
-	uint32_t size = SEARCH_START;
+	uint32_t size = BUDGET_USUAL;
 
 	best->record = NULL;
 	while (!bracket.high || (bracket.high > bracket.low && bracket.high - bracket.low > bracket.high / 100 + 1)) {

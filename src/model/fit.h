@@ -8,12 +8,13 @@
 
 enum profile { PROFILE_PAPER = 1, PROFILE_SPECTRAL = 2 };
 enum { LAYERS_MAX = 16 };
+enum { BUDGET_USUAL = 60400, EFFORT_USUAL = 5 }; /* where nothing else is asked for */
 
 struct fit_options {
 	enum profile profile;
-	uint32_t budget_bytes;     /* largest record, everything included; 60,400 unless told */
+	uint32_t budget_bytes;     /* largest record, everything included */
 	double max_error;          /* > 0: instead, the smallest record whose log RMSE is at most this */
-	int effort;                /* 1..9, 5 unless told */
+	int effort;                /* 1..9 */
 	const struct watch *watch; /* NULL: nobody; not a part of what a record says */
 };
 

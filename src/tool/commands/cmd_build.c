@@ -4,10 +4,11 @@
 #include "tool/options.h"
 #include "tool/report.h"
 
+#include "codec/record.h"
+
 #include <iconv.h>
 #include <stdlib.h>
 
-enum { BUDGET_LEAST = 1000, BUDGET_MOST = 4000000, BUDGET_USUAL = 60400, EFFORT_USUAL = 5 };
 enum {
 	OPTION_PROFILE = OPTION_LONG,
 	OPTION_BUDGET,
@@ -101,7 +102,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 				return EXIT_USAGE;
 			break;
 		case OPTION_BUDGET:
-			if (!option_bytes(self, "--budget", optarg, BUDGET_LEAST, BUDGET_MOST, &number))
+			if (!option_bytes(self, "--budget", optarg, RECORD_BUDGET_MIN, RECORD_BUDGET_MAX, &number))
 				return EXIT_USAGE;
 			options.fit.budget_bytes = (uint32_t)number;
 			has_budget = true;
@@ -130,7 +131,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 	if (has_budget && options.fit.max_error > 0)
 		return report_usage(self, "--budget and --max-error exclude each other");
 	if (options.fit.max_error > 0)
-		options.fit.budget_bytes = BUDGET_MOST;
+		options.fit.budget_bytes = RECORD_BUDGET_MAX;
 	options.inputs = argv + optind;
 	options.input_count = argc - optind;
 	return build_run(&options);

@@ -14,8 +14,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { BUDGET_BYTES = 60400, EFFORT = 5 };
-
 struct show_options {
 	const char *output, *reference;
 	bool svg, force;
@@ -168,7 +166,7 @@ static int show_main(const struct command *self, int argc, char **argv)
 	                                      {0}};
 	struct show_options options = {.slice_count = 5,
 	                               .theta_h = {5, 20, 40, 60, 80},
-	                               .fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_BYTES, .effort = EFFORT}};
+	                               .fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL}};
 	int option;
 
 	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
