@@ -23,20 +23,26 @@ static void lattice_make(bool dependent, struct lattice *lattice)
 	lattice_validate(lattice);
 }
 
+/* Density of slice 1, and its mean deviation from 1. The lattice is done with then. */
+static double slice_density(struct lattice *lattice, float density[16])
+{
+	struct density_source source;
+	assert_int_equal(density_source_measured(lattice, &source, NULL), BP_OK);
+	const double deviation = density_slice(&source, 1, density);
+	density_source_free(&source);
+	lattice_free(lattice);
+	return deviation;
+}
+
 static void a_product_of_marginals_has_density_1(void **state)
 {
 	(void)state;
-	bp_error error;
 	struct lattice lattice;
-	struct density_source source;
 	float density[16];
 	lattice_make(false, &lattice);
-	assert_int_equal(density_source_measured(&lattice, &source, &error), BP_OK);
-	assert_true(density_slice(&source, 1, density) < 1e-6);
+	assert_true(slice_density(&lattice, density) < 1e-6);
 	for (int n = 0; n < 16; n++)
 		assert_true(fabs((double)density[n] - 1) < 1e-6);
-	density_source_free(&source);
-	lattice_free(&lattice);
 }
 
 /*
@@ -46,41 +52,31 @@ static void a_product_of_marginals_has_density_1(void **state)
 static void without_gaps_the_density_is_the_ratio_to_the_marginals(void **state)
 {
 	(void)state;
-	bp_error error;
 	struct lattice lattice;
-	struct density_source source;
 	float density[16];
 	lattice_make(true, &lattice);
-	assert_int_equal(density_source_measured(&lattice, &source, &error), BP_OK);
-	assert_true(density_slice(&source, 1, density) > 0.05);
+	assert_true(slice_density(&lattice, density) > 0.05);
 	assert_true(fabs((double)density[2 * 4 + 3] - 1.230769) < 1e-5);
 	assert_true(fabs((double)density[0] - 1.090909) < 1e-5);
 	assert_true(fabs((double)density[2 * 4] - 0.923077) < 1e-5);
-	density_source_free(&source);
-	lattice_free(&lattice);
 }
 
 /* Plain marginals of what is left would see dependence where there is none. */
 static void gaps_do_not_make_independent_angles_look_dependent(void **state)
 {
 	(void)state;
-	bp_error error;
 	struct lattice lattice;
-	struct density_source source;
 	float density[16];
 	lattice_make(false, &lattice);
 	lattice.rgb[1][lattice_index(SMALL, 1, 3, 2)] = -1;
 	lattice.rgb[1][lattice_index(SMALL, 1, 3, 3)] = -1;
 	lattice.rgb[1][lattice_index(SMALL, 1, 2, 2)] = -1;
 	lattice_validate(&lattice);
-	assert_int_equal(density_source_measured(&lattice, &source, &error), BP_OK);
-	assert_true(density_slice(&source, 1, density) < 1e-4);
+	assert_true(slice_density(&lattice, density) < 1e-4);
 	for (int n = 0; n < 16; n++) {
 		bool gap = n == 14 || n == 15 || n == 10;
 		assert_true(gap ? isnan(density[n]) : fabs((double)density[n] - 1) < 1e-4);
 	}
-	density_source_free(&source);
-	lattice_free(&lattice);
 }
 
 static void an_empty_slice_and_a_black_one_are_harmless(void **state)

@@ -29,7 +29,7 @@ static void members_are_separated_by_commas(void **state)
 	json_integer(&json, "a", 18446744073709551615u);
 	json_array(&json, "b");
 	json_bool(&json, NULL, true);
-	json_null(&json, NULL);
+	json_number(&json, NULL, INFINITY);
 	json_close(&json);
 	json_object(&json, "c");
 	json_close(&json);

@@ -75,6 +75,18 @@ static struct fidelity fit_and_measure(const struct lattice *l, struct model **m
 	return f;
 }
 
+/* The same of a lattice that is done with then. */
+static void fit_and_free(struct lattice *l)
+{
+	struct model *model;
+	struct expansion table;
+	lattice_validate(l);
+	fit_and_measure(l, &model, &table);
+	expansion_free(&table);
+	model_free(model);
+	lattice_free(l);
+}
+
 static void assert_field(const struct sparse_field *field, struct lattice_dims d, enum paper_field kind)
 {
 	uint32_t rows, columns;
@@ -235,17 +247,11 @@ static void a_single_bright_cell_stays_where_it_is(void **user)
 	for (int q = 0; q < SMALL_COUNT; q++)
 		for (int s = 0; s < 4; s++) {
 			struct lattice l;
-			struct model *model;
-			struct expansion table;
 			size_t bright = lattice_cells(SMALL[q]) / 3;
 			assert_int_equal(lattice_alloc(SMALL[q], &l, NULL), BP_OK);
 			for (int c = 0; c < 3; c++)
 				l.rgb[c][bright] = sizes[s];
-			lattice_validate(&l);
-			fit_and_measure(&l, &model, &table);
-			expansion_free(&table);
-			model_free(model);
-			lattice_free(&l);
+			fit_and_free(&l);
 		}
 }
 
@@ -258,8 +264,6 @@ static void lattices_with_little_valid_are_fitted(void **user)
 		for (int s = 0; s < 5; s++) {
 			const struct lattice_dims d = SMALL[q];
 			struct lattice l;
-			struct model *model;
-			struct expansion table;
 			lattice_make(&l, d, s < 3 ? shares[s] : 0);
 			for (size_t i = 0; i < lattice_cells(d); i++) {
 				size_t slice = i / (d.theta_d * d.phi_d), row = i / d.phi_d % d.theta_d, column = i % d.phi_d;
@@ -267,11 +271,7 @@ static void lattices_with_little_valid_are_fitted(void **user)
 				for (int c = 0; c < 3; c++)
 					l.rgb[c][i] = gone ? -1 : i == 5 ? 1 : l.rgb[c][i];
 			}
-			lattice_validate(&l);
-			fit_and_measure(&l, &model, &table);
-			expansion_free(&table);
-			model_free(model);
-			lattice_free(&l);
+			fit_and_free(&l);
 		}
 }
 

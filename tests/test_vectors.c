@@ -35,20 +35,6 @@ static void make_names(const char *path)
 	vector_archive(path, records, bytes, 8);
 }
 
-/* Names of 255 bytes: 15 to a page, so 16 materials take two leaves and a root. */
-static void make_two_levels(const char *path)
-{
-	uint8_t *records[16];
-	size_t bytes[16];
-	for (int i = 0; i < 16; i++) {
-		char name[256];
-		memset(name, 'n', 253);
-		name[253] = (char)('0' + i / 10), name[254] = (char)('0' + i % 10), name[255] = 0;
-		records[i] = vector_record(name, SHAPE_MARGINALS, &bytes[i]);
-	}
-	vector_archive(path, records, bytes, 16);
-}
-
 static void make_with_section(const char *path, uint32_t flags)
 {
 	struct record_head head;
@@ -90,7 +76,7 @@ static const struct vector VECTORS[] = {
      make_limits},
 	{"good-empty", BP_OK, "No material and no index page.", make_empty},
 	{"good-names", BP_OK, "Eight names: a blank, two-, three- and four-byte characters, and 255 bytes.", make_names},
-	{"good-two-levels", BP_OK, "An index of two leaves and a root.", make_two_levels},
+	{"good-two-levels", BP_OK, "An index of two leaves and a root.", vector_two_levels},
 	{"good-optional-section", BP_OK, "A section of an unknown type with unknown flags, not required: skipped.",
      make_optional_section},
 	{"good-dropped-layer", BP_OK, "A record whose last layer was dropped: two layers, bit 2 of left out is clear.",

@@ -131,6 +131,20 @@ FIXTURE void vector_archive(const char *path, uint8_t *const *records, const siz
 	assert_int_equal(archive_writer_commit(writer, NULL), BP_OK);
 }
 
+/* Names of 255 bytes: 15 to a page, so 16 materials take two leaves and a root. */
+FIXTURE void vector_two_levels(const char *path)
+{
+	uint8_t *records[16];
+	size_t bytes[16];
+	for (int i = 0; i < 16; i++) {
+		char name[256];
+		memset(name, 'n', 253);
+		name[253] = (char)('0' + i / 10), name[254] = (char)('0' + i % 10), name[255] = 0;
+		records[i] = vector_record(name, SHAPE_MARGINALS, &bytes[i]);
+	}
+	vector_archive(path, records, bytes, 16);
+}
+
 FIXTURE void vector_three(const char *path)
 {
 	size_t bytes[3];

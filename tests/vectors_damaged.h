@@ -195,15 +195,8 @@ FIXTURE void make_gap(const char *path)
 FIXTURE void root_change(const char *path, bool cycle)
 {
 	struct bytes file;
-	uint8_t *root, *records[16];
-	size_t bytes[16];
-	for (int i = 0; i < 16; i++) {
-		char name[256];
-		memset(name, 'n', 253);
-		name[253] = (char)('0' + i / 10), name[254] = (char)('0' + i % 10), name[255] = 0;
-		records[i] = vector_record(name, SHAPE_MARGINALS, &bytes[i]);
-	}
-	vector_archive(path, records, bytes, 16);
+	uint8_t *root;
+	vector_two_levels(path);
 	file.at = fixture_file_read(path, &file.count);
 	root = file.at + file.count - PAGE_BYTES;
 	put(root + (cycle ? 16 : 16 + 268), cycle ? 2 : 0, 4);

@@ -32,13 +32,7 @@ echo "a report of three materials beside their files: $((($(date +%s%N) - start)
 "$tool" report -q --light key --embed -o embedded.html three.bpk
 
 # a record in the middle is damaged
-python3 - <<'PYTHON'
-bytes_ = bytearray(open("three.bpk", "rb").read())
-magic = b"\x8bREC\r\n\x1a\n"
-second = bytes_.index(magic, bytes_.index(magic) + 1)
-bytes_[bytes_.index(magic, second + 1) - 300] ^= 0x5A
-open("damaged.bpk", "wb").write(bytes_)
-PYTHON
+python3 "$top/tests/damage.py" three.bpk damaged.bpk silvered-mirror
 if "$tool" report -q -o damaged.html damaged.bpk 2>said; then echo "viewer.sh: a report of a damaged archive exits with 0"; exit 1; fi
 grep -q silvered-mirror said
 "$tool" report -q -o empty.html "$top/format-spec/vectors/good-empty.bpk"

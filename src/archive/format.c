@@ -5,7 +5,7 @@
 #include "bytes.h"
 #include "error.h"
 
-enum { AT_MAJOR = 8, AT_FLAGS = 12, AT_FILE_BYTES = 16, AT_COUNT = 24, AT_INDEX = 32, AT_RESERVED = 48, AT_CRC = 60 };
+enum { AT_MAJOR = 8, AT_FLAGS = 12, AT_COUNT = 24, AT_INDEX = 32, AT_RESERVED = 48, AT_CRC = 60 };
 
 void archive_header_write(const struct archive_header *header, uint8_t bytes[ARCHIVE_HEADER_BYTES])
 {

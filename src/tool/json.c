@@ -108,12 +108,6 @@ void json_bool(struct json *json, const char *key, bool value)
 	fputs(value ? "true" : "false", json->out);
 }
 
-void json_null(struct json *json, const char *key)
-{
-	member_begin(json, key);
-	fputs("null", json->out);
-}
-
 void json_hex(struct json *json, const char *key, const uint8_t *bytes, size_t count)
 {
 	member_begin(json, key);

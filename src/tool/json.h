@@ -37,7 +37,6 @@ void json_string(struct json *json, const char *key, const char *text);
 void json_integer(struct json *json, const char *key, uint64_t value);
 void json_number(struct json *json, const char *key, double value);
 void json_bool(struct json *json, const char *key, bool value);
-void json_null(struct json *json, const char *key);
 void json_hex(struct json *json, const char *key, const uint8_t *bytes, size_t count);
 
 #endif

@@ -26,8 +26,6 @@ typedef float floats8_unaligned __attribute__((vector_size(32), aligned(4), may_
 #define FLOATS_LOAD(p) ((floats4)(*(const floats4_unaligned *)(p)))
 #define FLOATS8_LOAD(p) ((floats8)(*(const floats8_unaligned *)(p)))
 #define FLOATS8_STORE(p, v) (*(floats8_unaligned *)(p) = (v))
-/* The mask is all ones where it is true. */
-#define LANES_SELECT(mask, yes, no) ((lanes4)(((mask4)(yes) & (mask)) | ((mask4)(no) & ~(mask))))
 #define LANES_ALL(x) ((lanes4){(x), (x), (x), (x)})
 
 static inline double lanes_sum(const lanes4 *v) { return ((*v)[0] + (*v)[1]) + ((*v)[2] + (*v)[3]); }

@@ -19,13 +19,7 @@ mkdir nothing
 brdfpack report -q --measured nothing -o alone.html out.bpk beta
 grep -o 'not compared: there is no measured file of that name' alone.html
 # a damaged record: the second of three
-python3 - <<'PYTHON'
-data = bytearray(open("out.bpk", "rb").read())
-magic = b"\x8bREC\r\n\x1a\n"
-second = data.index(magic, data.index(magic) + 1)
-data[data.index(magic, second + 1) - 30] ^= 1
-open("damaged.bpk", "wb").write(data)
-PYTHON
+damage out.bpk damaged.bpk alpha
 code brdfpack report -q -o damaged.html damaged.bpk
 grep -c '<section class=material' damaged.html
 grep -o 'data-name="alpha"><span class="ball hole"' damaged.html
