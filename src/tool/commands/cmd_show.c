@@ -66,11 +66,18 @@ static bp_status reference_read(const char *path, const char *name, struct latti
 	return result;
 }
 
-/* A measured file alone: fits it in memory, as `build` would. */
-static bp_status material_fit(struct show *show, const struct show_options *options, bp_error *error)
+/* A measured file alone: packs it in memory, as `build` would, and decodes the record. */
+static bp_status material_pack(struct show *show, const struct show_options *options, bp_error *error)
 {
 	struct material *material = &show->material;
-	bp_status status = model_fit(&material->lattice, &options->fit, &material->model, error);
+	const struct record_source source = {0};
+	uint8_t *record = NULL;
+	size_t record_bytes;
+	bp_status status =
+		record_encode(&material->lattice, material->name, &source, &options->fit, &record, &record_bytes, &material->head, error);
+	if (status == BP_OK)
+		status = record_decode_whole(&material->head, 0, record, &material->model, error);
+	free(record);
 	if (status == BP_OK)
 		status = model_expand(material->model, 0, &material->table, error);
 	return status;
@@ -132,7 +139,7 @@ static int show_draw(struct show *show, const struct show_options *options)
 
 	if (material->measured) {
 		show->truth = &material->lattice;
-		if (material_fit(show, options, &error)) {
+		if (material_pack(show, options, &error)) {
 			report_error(material->path, NULL, &error);
 			return EXIT_FAILED;
 		}
@@ -214,13 +221,13 @@ const struct command command_show = {
 			 "       brdfpack show [OPTION]... -o OUT.png|OUT.svg MERL-FILE [NAME]\n"
 			 "Draws the mean absolute error of every theta_h before and after coding, and the conditional pair-copula\n"
 			 "densities of theta_d and phi_d for some theta_h side by side: 1 (white) everywhere means that the two are\n"
-			 "independent given theta_h. Grey cells were not measured. A MERL file is fitted for the purpose.\n"
+			 "independent given theta_h. Grey cells were not measured. A MERL file is packed for the purpose, as build would.\n"
 			 "\n"
 			 "  -o, --output=FILE    the picture to write; an older one that brdfpack drew is replaced\n"
 			 "      --force          replace whatever is there\n"
 			 "      --measured=PATH  the measured file of an archived material, or its folder; without it only the\n"
 			 "                       decoded densities are drawn\n"
 			 "      --theta-h=LIST   up to 12 angles in degrees (5,20,40,60,80)\n"
-			 "      --profile=NAME   how a MERL file is fitted: spectral or paper (paper)\n"
+			 "      --profile=NAME   how a MERL file is packed: spectral or paper (paper)\n"
 			 "  -h, --help           this text\n",
 };

@@ -13,3 +13,8 @@ grep -o 'theta_h [0-9][^<]*' c.svg | sort -u
 brdfpack show -o d.png alpha.binary "another name"
 head -c 4 d.png | tail -c 3
 echo
+# of a measured file is drawn what `build` would pack
+build -q --profile spectral -o spectral.bpk .
+brdfpack show --measured . -o e.svg spectral.bpk alpha
+brdfpack show --profile spectral -o f.svg alpha.binary
+cmp e.svg f.svg && cmp b.svg <(brdfpack show -o g.svg alpha.binary; cat g.svg) && echo "as packed"
