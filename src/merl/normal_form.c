@@ -3,30 +3,40 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <uchar.h>
 
 #include "name.h"
 
 enum { NORMAL_BYTES = 4096 };
 
-static const struct decomposition {
-	uint16_t composed, base, mark;
-} DECOMPOSITIONS[] = {
+static const struct {
+	uint16_t mark;
+	const char16_t *pairs;
+} MARKS[] = {
 #include "normal_form.inc.h"
 };
 
+struct decomposition {
+	uint16_t composed, base, mark;
+};
+
+static int composed_compare(const void *a, const void *b)
+{
+	return ((const struct decomposition *)a)->composed - ((const struct decomposition *)b)->composed;
+}
+
 static const struct decomposition *decomposition_find(uint32_t code)
 {
-	size_t low = 0, high = sizeof DECOMPOSITIONS / sizeof *DECOMPOSITIONS;
-	while (low < high) {
-		const size_t middle = (low + high) / 2;
-		if (DECOMPOSITIONS[middle].composed == code)
-			return &DECOMPOSITIONS[middle];
-		if (DECOMPOSITIONS[middle].composed < code)
-			low = middle + 1;
-		else
-			high = middle;
+	static struct decomposition all[1100]; /* by composed character, once one is asked for */
+	static size_t count;
+	if (count == 0) {
+		for (size_t m = 0; m < sizeof MARKS / sizeof *MARKS; m++)
+			for (const char16_t *pair = MARKS[m].pairs; *pair; pair += 2)
+				all[count++] = (struct decomposition){pair[0], pair[1], MARKS[m].mark};
+		qsort(all, count, sizeof *all, composed_compare);
 	}
-	return NULL;
+	const struct decomposition key = {.composed = (uint16_t)code};
+	return code > UINT16_MAX ? NULL : bsearch(&key, all, count, sizeof *all, composed_compare);
 }
 
 struct text {
