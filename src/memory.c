@@ -55,3 +55,14 @@ const bp_allocator *memory_allocator_set(const bp_allocator *allocator)
 	allocator_now = allocator;
 	return before;
 }
+
+void *memory_grown(void *list, size_t count, size_t *room, size_t size)
+{
+	if (count < *room)
+		return list;
+	const size_t more = *room ? 2 * *room : 64;
+	void *grown = realloc(list, more * size);
+	if (grown)
+		*room = more;
+	return grown;
+}

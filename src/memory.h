@@ -1,5 +1,5 @@
 /*
- * memory.h: large blocks of memory.
+ * memory.h: large blocks of memory, and lists that grow.
  */
 #ifndef MEMORY_H
 #define MEMORY_H
@@ -29,5 +29,11 @@ void memory_free_kept(void *block); /* NULL is allowed */
 
 /* Sets the thread's allocator of kept memory, NULL for malloc, and returns the one before; *allocator stays the caller's. */
 const bp_allocator *memory_allocator_set(const bp_allocator *allocator);
+
+/*
+ * A list of *room elements of `size` bytes with room for one more behind `count` of them: the same, or realloc'ed to twice as many.
+ * NULL: no memory; the list is as it was.
+ */
+void *memory_grown(void *list, size_t count, size_t *room, size_t size);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "codec/record.h"
 #include "error.h"
+#include "memory.h"
 #include "writer.h"
 
 struct gathered {
@@ -54,14 +55,10 @@ static size_t place_find(const bp_writer *writer, const char *name)
 
 static bp_status room_make(bp_writer *writer, bp_error *error)
 {
-	if (writer->count < writer->capacity)
-		return BP_OK;
-	const size_t capacity = writer->capacity ? 2 * writer->capacity : 16;
-	struct gathered *list = realloc(writer->list, capacity * sizeof *list);
+	struct gathered *list = memory_grown(writer->list, writer->count, &writer->capacity, sizeof *list);
 	if (!list)
-		return error_memory(error, capacity * sizeof *list);
+		return error_memory(error, writer->count * sizeof *list);
 	writer->list = list;
-	writer->capacity = capacity;
 	return BP_OK;
 }
 

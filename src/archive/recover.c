@@ -11,6 +11,7 @@
 #include "bytes.h"
 #include "codec/record.h"
 #include "error.h"
+#include "memory.h"
 #include "index.h"
 #include "writer.h"
 
@@ -62,14 +63,10 @@ static size_t scan_read(const struct scan *scan, uint64_t offset, uint8_t *bytes
 static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, uint32_t bytes, bool intact, bp_error *error)
 {
 	struct seen *entry;
-	if (scan->count == scan->capacity) {
-		size_t capacity = scan->capacity ? 2 * scan->capacity : 64;
-		struct seen *grown = realloc(scan->seen, capacity * sizeof *grown);
-		if (!grown)
-			return error_memory(error, capacity * sizeof *grown);
-		scan->seen = grown;
-		scan->capacity = capacity;
-	}
+	struct seen *grown = memory_grown(scan->seen, scan->count, &scan->capacity, sizeof *grown);
+	if (!grown)
+		return error_memory(error, scan->count * sizeof *grown);
+	scan->seen = grown;
 	if (scan->names.count > UINT32_MAX - BP_NAME_BYTES_MAX - 1)
 		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: too many names to remember", scan->path);
 	entry = &scan->seen[scan->count++];

@@ -5,6 +5,7 @@
 
 #include "merl/merl_file.h"
 #include "eval_timing.h"
+#include "timing.h"
 
 static const struct {
 	const char *what, *unit, *yardstick;
@@ -28,17 +29,7 @@ static const struct {
 	[DENSITY] = {"density of a given pair", "ns", NULL, 0, 1e9, ""},
 };
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
-static double median(struct series *series)
-{
-	qsort(series->value, (size_t)series->count, sizeof *series->value, ascending);
-	return series->count ? series->value[series->count / 2] : NAN;
-}
+static double median(struct series *series) { return series->count ? median_of(series->value, series->count) : NAN; }
 
 static void memory_print(const char *what, size_t bytes, const char *asked)
 {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "model/math/select.h"
+
 /* The columns after material and method. */
 struct column {
 	const char *name, *format;
@@ -82,13 +84,6 @@ bool row_same_setting(const struct row *a, const struct row *b)
 	return row_compare(a, &other) == 0;
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 struct row row_median(const struct row *rows, int count)
 {
 	double values[ROW_MEDIAN_MAX];
@@ -97,7 +92,7 @@ struct row row_median(const struct row *rows, int count)
 	if (count > ROW_MEDIAN_MAX)
 		count = ROW_MEDIAN_MAX;
 	for (int n = 0; n < COLUMN_COUNT; n++) {
-		int finite = 0;
+		size_t finite = 0;
 		for (int r = 0; r < count; r++) {
 			struct row copy = rows[r];
 			if (isfinite(*cell(&copy, n)))
@@ -105,8 +100,7 @@ struct row row_median(const struct row *rows, int count)
 		}
 		if (!finite)
 			continue; /* stays what it is: not finite */
-		qsort(values, (size_t)finite, sizeof *values, ascending);
-		*cell(&median, n) = (values[(finite - 1) / 2] + values[finite / 2]) / 2;
+		*cell(&median, n) = (select_kth(values, finite, (finite - 1) / 2) + select_kth(values, finite, finite / 2)) / 2;
 	}
 	return median;
 }

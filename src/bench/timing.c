@@ -9,22 +9,12 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "model/math/select.h"
 #include "angles.h"
 
 enum { REPEATS_MAX = 16, READ_BYTES = 128 * 1024 };
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
-double median_of(double *values, int count)
-{
-	qsort(values, (size_t)count, sizeof *values, ascending);
-	return values[(count - 1) / 2];
-}
+double median_of(double *values, int count) { return select_kth(values, (size_t)count, (size_t)(count - 1) / 2); }
 
 /* splitmix64 (Steele, Lea, Flood 2014), in [0, 1). */
 static double random_unit(uint64_t *state)

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <uchar.h>
 
+#include "memory.h"
 #include "name.h"
 
 enum { NORMAL_BYTES = 4096 };
@@ -121,14 +122,10 @@ void normal_forms_add(struct normal_forms *forms, const char *text, size_t numbe
 	char form[NORMAL_BYTES];
 	if (is_ascii(text) || !normal_form(text, form, sizeof form))
 		return;
-	if (forms->count == forms->room) {
-		const size_t room = forms->room ? 2 * forms->room : 64;
-		struct normal_form_entry *entry = realloc(forms->entry, room * sizeof *entry);
-		if (!entry)
-			return;
-		forms->entry = entry;
-		forms->room = room;
-	}
+	struct normal_form_entry *entry = memory_grown(forms->entry, forms->count, &forms->room, sizeof *entry);
+	if (!entry)
+		return;
+	forms->entry = entry;
 	char *copy = strdup(form);
 	if (copy)
 		forms->entry[forms->count++] = (struct normal_form_entry){.form = copy, .number = number};

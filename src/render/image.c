@@ -4,12 +4,7 @@
 #include <stdlib.h>
 
 #include "error.h"
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
+#include "model/math/select.h"
 
 bp_status image_exposure(const struct sphere_image *reference, double *exposure, bp_error *error)
 {
@@ -22,8 +17,7 @@ bp_status image_exposure(const struct sphere_image *reference, double *exposure,
 		if (reference->covered[n])
 			mean[count++] = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3;
 	}
-	qsort(mean, count, sizeof *mean, ascending);
-	*exposure = 0.9 / fmax(1e-12, count ? mean[(size_t)(0.9 * (double)count)] : 0);
+	*exposure = 0.9 / fmax(1e-12, count ? select_kth(mean, count, (size_t)(0.9 * (double)count)) : 0);
 	free(mean);
 	return BP_OK;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
 
 static const double COVERED_BELOW = 0.99, COSINE_ABOVE = 1e-3;
 enum { BAND_PLACES = 6000000 };
@@ -68,14 +69,10 @@ static double light_reach(const struct light *light, const double n[3], double t
 
 static bool plan_grow(struct sphere_plan *plan)
 {
-	if (plan->run_count == plan->run_capacity) {
-		size_t capacity = plan->run_capacity ? 2 * plan->run_capacity : 1024;
-		struct run *runs = realloc(plan->runs, capacity * sizeof *runs);
-		if (!runs)
-			return false;
-		plan->runs = runs;
-		plan->run_capacity = capacity;
-	}
+	struct run *runs = memory_grown(plan->runs, plan->run_count, &plan->run_capacity, sizeof *runs);
+	if (!runs)
+		return false;
+	plan->runs = runs;
 	/* room for one whole row more */
 	if (plan->place_count + plan->size > plan->place_capacity) {
 		size_t capacity = plan->place_capacity + plan->place_capacity / 2 + plan->size + 4096;

@@ -104,3 +104,15 @@ bp_status material_counting_cells(const struct record_head *head, uint8_t **vali
 	*valid = mask;
 	return BP_OK;
 }
+
+bp_status material_lookup(const struct record_head *head, const struct expansion *decoded, struct lookup_table *out,
+                          bp_error *error)
+{
+	uint8_t *valid = NULL;
+	bp_status status = material_counting_cells(head, &valid, error);
+	if (status != BP_OK)
+		return status;
+	status = lookup_table_decoded(decoded, valid, 0, out, error);
+	free(valid);
+	return status;
+}

@@ -6,6 +6,7 @@
 
 #include "archive/reader.h"
 #include "command.h"
+#include "render/lookup.h"
 
 struct material {
 	const char *path;
@@ -27,5 +28,8 @@ void material_free(struct material *material); /* a zeroed struct is allowed */
 
 /* 1 where a cell of a decoded table counts: all but those that extraction writes as negative. malloc'ed; the caller frees it. */
 bp_status material_counting_cells(const struct record_head *head, uint8_t **valid, bp_error *error);
+/* A decoded table to render from: cells that do not count are black. */
+bp_status material_lookup(const struct record_head *head, const struct expansion *decoded, struct lookup_table *out,
+                          bp_error *error);
 
 #endif

@@ -11,17 +11,14 @@
 
 #include "name.h"
 #include "error.h"
+#include "memory.h"
 
 static bp_status word_add(struct scene_words *words, const char *text, size_t bytes, bool spare, bp_error *error)
 {
-	if (words->count == words->room) {
-		size_t room = words->room ? 2 * words->room : 64;
-		struct scene_word *word = realloc(words->word, room * sizeof *word);
-		if (!word)
-			return error_memory(error, room * sizeof *word);
-		words->word = word;
-		words->room = room;
-	}
+	struct scene_word *word = memory_grown(words->word, words->count, &words->room, sizeof *word);
+	if (!word)
+		return error_memory(error, words->count * sizeof *word);
+	words->word = word;
 	char *copy = strndup(text, bytes);
 	if (!copy)
 		return error_memory(error, bytes);

@@ -1,6 +1,7 @@
 #include "items.h"
 
 #include "error.h"
+#include "memory.h"
 #include "build_report.h"
 
 #include <stdio.h>
@@ -9,17 +10,13 @@
 
 bp_status items_add(struct items *items, const struct source_item *source, bool owned, bp_error *error)
 {
-	if (items->count == items->room) {
-		size_t room = items->room ? 2 * items->room : 128;
-		struct item *item = realloc(items->item, room * sizeof *item);
-		if (!item) {
-			if (owned)
-				source_item_clear(&(struct source_item){source->name, source->path, source->member, 0, 0});
-			return error_memory(error, room * sizeof *item);
-		}
-		items->item = item;
-		items->room = room;
+	struct item *item = memory_grown(items->item, items->count, &items->room, sizeof *item);
+	if (!item) {
+		if (owned)
+			source_item_clear(&(struct source_item){source->name, source->path, source->member, 0, 0});
+		return error_memory(error, items->count * sizeof *item);
 	}
+	items->item = item;
 	items->item[items->count++] = (struct item){.source = *source, .owned = owned};
 	return BP_OK;
 }

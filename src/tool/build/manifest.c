@@ -3,16 +3,14 @@
 #include "name.h"
 #include "merl/source_kind.h"
 #include "error.h"
+#include "memory.h"
 #include "merl/sha256.h"
+#include "tool/whole_file.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { COLUMNS_MAX = 64 };
 
@@ -180,15 +178,12 @@ bp_status manifest_parse(char *text, size_t bytes, struct manifest *out, bp_erro
 		size_t count = columns_split(line, cells);
 		if (!parser.decided && columns_decide(&parser, cells, count))
 			continue;
-		if (manifest.count == room) {
-			room = room ? 2 * room : 128;
-			void *grown = realloc(manifest.entries, room * sizeof *manifest.entries);
-			if (!grown) {
-				status = error_memory(error, room * sizeof *manifest.entries);
-				goto out;
-			}
-			manifest.entries = grown;
+		struct manifest_entry *entries = memory_grown(manifest.entries, manifest.count, &room, sizeof *entries);
+		if (!entries) {
+			status = error_memory(error, room * sizeof *entries);
+			goto out;
 		}
+		manifest.entries = entries;
 		status = entry_parse(&parser, cells, count, &manifest.entries[manifest.count], error);
 		if (status)
 			goto out;
@@ -210,44 +205,10 @@ out:
 
 bp_status manifest_read(const char *path, struct manifest *out, bp_error *error)
 {
-	struct stat facts;
-	char *text = NULL;
-	size_t used = 0, room = 1 << 16;
-	bp_status status = BP_OK;
-
-	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* O_NONBLOCK: a FIFO must not hang us */
-	if (fd < 0)
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s", strerror(errno));
-	if (fstat(fd, &facts) != 0 || !S_ISREG(facts.st_mode)) {
-		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "a manifest must be a regular file");
-		goto out;
-	}
-	for (;;) {
-		char *grown = !text || used == room ? realloc(text, (room = text ? 2 * room : room) + 1) : text;
-		if (!grown) {
-			status = error_memory(error, room);
-			goto out;
-		}
-		text = grown;
-		ssize_t got = read(fd, text + used, room - used);
-		if (got < 0) {
-			status = error_set(error, BP_ERROR_IO, used, "%s", strerror(errno));
-			goto out;
-		}
-		if (got == 0)
-			break;
-		used += (size_t)got;
-		if (used > MANIFEST_FILE_BYTES_MAX) {
-			status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "more than %d bytes", MANIFEST_FILE_BYTES_MAX);
-			goto out;
-		}
-	}
-	status = manifest_parse(text, used, out, error);
-	text = NULL; /* taken over */
-out:
-	free(text);
-	close(fd);
-	return status;
+	char *text;
+	size_t bytes;
+	const bp_status status = whole_file_read(path, MANIFEST_FILE_BYTES_MAX, &text, &bytes, error);
+	return status ? status : manifest_parse(text, bytes, out, error);
 }
 
 void manifest_free(struct manifest *manifest)

@@ -19,15 +19,8 @@ struct render_options {
 /* The material's table as a renderer sees it: cells that nobody measured are black. */
 static bp_status table_make(const struct material *material, struct lookup_table *table, bp_error *error)
 {
-	uint8_t *valid;
-	if (material->measured)
-		return lookup_table_measured(&material->lattice, table, error);
-	bp_status status = material_counting_cells(&material->head, &valid, error);
-	if (status != BP_OK)
-		return status;
-	status = lookup_table_decoded(&material->table, valid, 0, table, error);
-	free(valid);
-	return status;
+	return material->measured ? lookup_table_measured(&material->lattice, table, error)
+	                          : material_lookup(&material->head, &material->table, table, error);
 }
 
 static bp_status image_write(const struct render_options *options, const struct sphere_image *image, bp_error *error)

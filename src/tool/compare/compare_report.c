@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "model/math/select.h"
 #include "tool/facts.h"
 #include "tool/json.h"
 #include "tool/report.h"
@@ -140,23 +141,17 @@ void compare_report_row(const struct compare_report *report, const struct compar
 		text_row(report, item->entry.name, values, &item->result.comparison.worst);
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 enum { MEDIAN, WORST, MEAN, SUMMARY_ROWS };
 static const char *const SUMMARY_NAMES[SUMMARY_ROWS] = {"median", "worst", "mean"};
 
-/* sorted[count], ascending. */
-static void summarise(const double *sorted, size_t count, bool low_is_bad, double out[SUMMARY_ROWS])
+/* Rearranges the values. */
+static void summarise(double *values, size_t count, bool low_is_bad, double out[SUMMARY_ROWS])
 {
 	double sum = 0;
 	for (size_t n = 0; n < count; n++)
-		sum += sorted[n];
-	out[MEDIAN] = (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
-	out[WORST] = low_is_bad ? sorted[0] : sorted[count - 1];
+		sum += values[n];
+	out[MEDIAN] = (select_kth(values, count, (count - 1) / 2) + select_kth(values, count, count / 2)) / 2;
+	out[WORST] = select_kth(values, count, low_is_bad ? 0 : count - 1);
 	out[MEAN] = sum / (double)count;
 }
 
@@ -197,7 +192,6 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 			}
 		if (!used)
 			break;
-		qsort(column, used, sizeof *column, ascending);
 		summarise(column, used, FIGURES[f].low_is_bad, out);
 		for (int r = 0; r < SUMMARY_ROWS; r++)
 			rows[r][f] = out[r];

@@ -1,7 +1,5 @@
 #include "page.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <libgen.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +16,7 @@
 #include "tool/measured.h"
 #include "tool/progress.h"
 #include "tool/report.h"
+#include "tool/whole_file.h"
 
 /* A page of 512 pixels would be ten times as large and show nothing more. */
 enum { SIZE_DETAILS = SPHERE_SIZE, SIZE_SHEET = 40, EMBED_BYTES_MAX = 512 << 20, PROBLEMS_MAX = 1000 };
@@ -83,37 +82,6 @@ static int problem_note(void *user, const bp_problem *problem)
 	return ++page->problem_count >= PROBLEMS_MAX;
 }
 
-/* A file, whole; `most` bytes at most. */
-static bp_status file_read(const char *path, size_t most, char **out, size_t *out_bytes, bp_error *error)
-{
-	struct stat facts;
-	FILE *file = fopen(path, "rb");
-	if (!file || fstat(fileno(file), &facts) != 0) {
-		error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot read: %s", path, strerror(errno));
-		if (file)
-			fclose(file);
-		return BP_ERROR_IO;
-	}
-	size_t bytes = (size_t)facts.st_size;
-	char *text = bytes <= most ? malloc(bytes + 1) : NULL;
-	bp_status status = BP_OK;
-	if (bytes > most)
-		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-		                   "%s: %zu bytes do not fit into a page; serve it beside the page instead", path, bytes);
-	else if (!text)
-		status = error_memory(error, bytes);
-	else if (fread(text, 1, bytes, file) != bytes)
-		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot read all of it", path);
-	fclose(file);
-	if (status != BP_OK) {
-		free(text);
-		return status;
-	}
-	*out = text;
-	*out_bytes = bytes;
-	return BP_OK;
-}
-
 /* The viewer's part of the page, as `make viewer` leaves it beside the tool and `make install` under share; none is no error. */
 static void viewer_find(struct page *page)
 {
@@ -127,7 +95,7 @@ static void viewer_find(struct page *page)
 	for (size_t n = 0; !page->viewer && n < sizeof PLACES / sizeof *PLACES; n++) {
 		snprintf(path, sizeof path, "%s/%s", folder, PLACES[n]);
 		if (access(path, R_OK) == 0)
-			file_read(path, 16 << 20, &page->viewer, &page->viewer_bytes, NULL);
+			whole_file_read(path, 16 << 20, &page->viewer, &page->viewer_bytes, NULL);
 	}
 }
 
@@ -197,9 +165,11 @@ static bp_status archive_embed(FILE *out, const struct page *page, bp_error *err
 {
 	char *bytes;
 	size_t count;
-	bp_status status = file_read(page->selection->path, EMBED_BYTES_MAX, &bytes, &count, error);
+	bp_error reason;
+	bp_status status = whole_file_read(page->selection->path, EMBED_BYTES_MAX, &bytes, &count, &reason);
 	if (status != BP_OK)
-		return status;
+		return error_set(error, status, reason.offset, "%s: %s%s", page->selection->path, reason.message,
+		                 status == BP_ERROR_LIMIT ? " do not fit into a page; serve it beside the page instead" : "");
 	fputs("<script type=\"application/x-brdfpack\" id=embedded>", out);
 	html_base64(out, (const uint8_t *)bytes, count);
 	fputs("</script>\n", out);

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "memory_stream.h"
+#include "model/math/select.h"
 #include "page_html.h"
 #include "page_plots.h"
 #include "tool/facts.h"
@@ -17,7 +18,6 @@ struct subject {
 	struct record_head head;
 	struct model *model;
 	struct expansion table;
-	uint8_t *valid;         /* cells that count, as in a picture of it alone */
 	struct lattice lattice; /* the measured file; alloc'ed only where there is one */
 	bool measured;
 	struct comparison comparison;
@@ -30,7 +30,6 @@ static void subject_free(struct subject *subject)
 {
 	model_free(subject->model);
 	expansion_free(&subject->table);
-	free(subject->valid);
 	lattice_free(&subject->lattice);
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		picture_free(&subject->spheres[l]);
@@ -60,9 +59,7 @@ static bp_status decoded_draw(struct page_job *job, struct subject *subject, bp_
 	double exposure;
 	bp_status status = comparison_plans_make(plans, subject->head.dims, error);
 	if (status == BP_OK)
-		status = material_counting_cells(&subject->head, &subject->valid, error);
-	if (status == BP_OK)
-		status = lookup_table_decoded(&subject->table, subject->valid, 0, &lookup, error);
+		status = material_lookup(&subject->head, &subject->table, &lookup, error);
 	if (status != BP_OK)
 		return status;
 	energy_measure(plans->energy, &lookup, &subject->energy);
@@ -193,12 +190,6 @@ static bp_status spheres_write(FILE *out, const struct subject *subject, bp_erro
 	return status;
 }
 
-static int ascending(const void *a, const void *b)
-{
-	const float x = *(const float *)a, y = *(const float *)b;
-	return (x > y) - (x < y);
-}
-
 /* The plane theta_h x theta_d at one phi_d, theta_h to the right on the lattice's own scale, theta_d upwards; exposed by its 90th percentile. */
 static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t k, bp_error *error)
 {
@@ -208,15 +199,14 @@ static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t 
 	const double degrees = (k + 0.5) * 180 / table->dims.phi_d;
 	struct picture picture = {0};
 	char alt[512];
-	float *mean = malloc(pixels * sizeof *mean);
+	double *mean = malloc(pixels * sizeof *mean);
 	bp_status status = mean ? picture_alloc(width, height, &picture, error) : error_memory(error, pixels * sizeof *mean);
 	if (status == BP_OK) {
 		for (size_t n = 0; n < pixels; n++) {
 			const size_t cell = lattice_index(table->dims, (uint32_t)(n % width), (uint32_t)(n / width), k);
-			mean[n] = (table->rgb[0][cell] + table->rgb[1][cell] + table->rgb[2][cell]) / 3;
+			mean[n] = (double)((table->rgb[0][cell] + table->rgb[1][cell] + table->rgb[2][cell]) / 3);
 		}
-		qsort(mean, pixels, sizeof *mean, ascending);
-		const double white = fmax(1e-30, (double)mean[(size_t)(0.9 * (double)pixels)]) / 0.9;
+		const double white = fmax(1e-30, select_kth(mean, pixels, (size_t)(0.9 * (double)pixels))) / 0.9;
 		for (size_t n = 0; n < pixels; n++) {
 			const uint32_t i = (uint32_t)(n % width), j = height - 1 - (uint32_t)(n / width);
 			for (int c = 0; c < 3; c++)
