@@ -56,13 +56,9 @@ const bp_allocator *memory_allocator_set(const bp_allocator *allocator)
 	return before;
 }
 
-void *memory_grown(void *list, size_t count, size_t *room, size_t size)
+void *memory_grown(void *list, size_t count, size_t size)
 {
-	if (count < *room)
+	if (count & (count - 1) || (count && count < 16))
 		return list;
-	const size_t more = *room ? 2 * *room : 64;
-	void *grown = realloc(list, more * size);
-	if (grown)
-		*room = more;
-	return grown;
+	return realloc(list, (count ? 2 * count : 16) * size);
 }

@@ -31,9 +31,9 @@ void memory_free_kept(void *block); /* NULL is allowed */
 const bp_allocator *memory_allocator_set(const bp_allocator *allocator);
 
 /*
- * A list of *room elements of `size` bytes with room for one more behind `count` of them: the same, or realloc'ed to twice as many.
- * NULL: no memory; the list is as it was.
+ * A list with room for one more behind `count` elements of `size` bytes: the same, or realloc'ed. NULL: no memory; the list is as it
+ * was. Lists that grow by this alone have room for a power of two, so nobody keeps it.
  */
-void *memory_grown(void *list, size_t count, size_t *room, size_t size);
+void *memory_grown(void *list, size_t count, size_t size);
 
 #endif

@@ -15,7 +15,7 @@ struct gathered {
 
 struct bp_writer {
 	struct gathered *list; /* in the order of the names */
-	size_t count, capacity;
+	size_t count;
 };
 
 bp_status bp_writer_create(bp_writer **out, bp_error *error)
@@ -55,7 +55,7 @@ static size_t place_find(const bp_writer *writer, const char *name)
 
 static bp_status room_make(bp_writer *writer, bp_error *error)
 {
-	struct gathered *list = memory_grown(writer->list, writer->count, &writer->capacity, sizeof *list);
+	struct gathered *list = memory_grown(writer->list, writer->count, sizeof *list);
 	if (!list)
 		return error_memory(error, writer->count * sizeof *list);
 	writer->list = list;

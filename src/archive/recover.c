@@ -30,8 +30,8 @@ struct scan {
 	recover_report_fn *report;
 	void *user;
 	struct seen *seen;
-	size_t count, capacity,
-		record_count;                 /* records come before what only the index names, unless an archive stands behind another */
+	size_t count;
+	size_t record_count;              /* records come before what only the index names, unless an archive stands behind another */
 	struct byte_buffer names;         /* each with its NUL: a million take some 10 MB, in fixed places they would take 256 */
 	uint8_t record[RECORD_BYTES_MAX]; /* the candidate; the scan is malloc'ed */
 };
@@ -63,7 +63,7 @@ static size_t scan_read(const struct scan *scan, uint64_t offset, uint8_t *bytes
 static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, uint32_t bytes, bool intact, bp_error *error)
 {
 	struct seen *entry;
-	struct seen *grown = memory_grown(scan->seen, scan->count, &scan->capacity, sizeof *grown);
+	struct seen *grown = memory_grown(scan->seen, scan->count, sizeof *grown);
 	if (!grown)
 		return error_memory(error, scan->count * sizeof *grown);
 	scan->seen = grown;

@@ -122,7 +122,7 @@ void normal_forms_add(struct normal_forms *forms, const char *text, size_t numbe
 	char form[NORMAL_BYTES];
 	if (is_ascii(text) || !normal_form(text, form, sizeof form))
 		return;
-	struct normal_form_entry *entry = memory_grown(forms->entry, forms->count, &forms->room, sizeof *entry);
+	struct normal_form_entry *entry = memory_grown(forms->entry, forms->count, sizeof *entry);
 	if (!entry)
 		return;
 	forms->entry = entry;

@@ -23,7 +23,7 @@ struct normal_forms {
 		char *form;
 		size_t number;
 	} * entry;
-	size_t count, room;
+	size_t count;
 	bool sorted;
 };
 

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "error.h"
+#include "memory.h"
 #include "source_names.h"
 
 enum { DEPTH_MAX = 1000 };
@@ -43,14 +44,6 @@ static bp_status refuse(struct source_list *list, const char *name, const char *
 	return status;
 }
 
-/* Room for one more after `count` elements of `size` bytes: capacities are powers of two, so nobody keeps them. NULL: no memory. */
-static void *array_room(void *base, size_t count, size_t size)
-{
-	if (count & (count - 1) || (count && count < 16))
-		return base;
-	return reallocarray(base, count ? 2 * count : 16, size);
-}
-
 static bp_status item_add(struct source_list *list, const char *path, const struct container_member *member, uint64_t bytes,
                           bp_error *error)
 {
@@ -63,7 +56,7 @@ static bp_status item_add(struct source_list *list, const char *path, const stru
 	}
 	if (fault)
 		return refuse(list, name, path, member ? member->path : NULL, why.message, error);
-	struct source_item *items = array_room(list->items, list->item_count, sizeof *items);
+	struct source_item *items = memory_grown(list->items, list->item_count, sizeof *items);
 	if (!items)
 		return error_memory(error, 2 * list->item_count * sizeof *items);
 	list->items = items;
@@ -78,8 +71,8 @@ static bp_status item_add(struct source_list *list, const char *path, const stru
 
 static bp_status stream_add(struct source_list *list, const char *path, bool named, bp_error *error)
 {
-	char **streams = array_room(list->streams, list->stream_count, sizeof *streams);
-	bool *marks = streams ? array_room(list->stream_named, list->stream_count, sizeof *marks) : NULL;
+	char **streams = memory_grown(list->streams, list->stream_count, sizeof *streams);
+	bool *marks = streams ? memory_grown(list->stream_named, list->stream_count, sizeof *marks) : NULL;
 	if (streams)
 		list->streams = streams;
 	if (marks)
@@ -183,7 +176,7 @@ static bp_status folder_add(struct source_list *list, const char *path, const st
 		notice(list, SOURCE_DAMAGED, path, "more than 1000 folders deep: what is below is not searched");
 		return BP_OK;
 	}
-	struct folder *folders = array_room(visited->folders, visited->count, sizeof *folders);
+	struct folder *folders = memory_grown(visited->folders, visited->count, sizeof *folders);
 	if (!folders)
 		return error_memory(error, 2 * visited->count * sizeof *folders);
 	visited->folders = folders;

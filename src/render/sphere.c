@@ -21,7 +21,7 @@ struct sphere_plan {
 	struct lattice_dims dims;
 	struct run *runs;
 	struct place *places;
-	size_t run_count, run_capacity, place_count, place_capacity;
+	size_t run_count, place_count, place_capacity;
 };
 
 /*
@@ -69,7 +69,7 @@ static double light_reach(const struct light *light, const double n[3], double t
 
 static bool plan_grow(struct sphere_plan *plan)
 {
-	struct run *runs = memory_grown(plan->runs, plan->run_count, &plan->run_capacity, sizeof *runs);
+	struct run *runs = memory_grown(plan->runs, plan->run_count, sizeof *runs);
 	if (!runs)
 		return false;
 	plan->runs = runs;

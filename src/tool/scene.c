@@ -15,7 +15,7 @@
 
 static bp_status word_add(struct scene_words *words, const char *text, size_t bytes, bool spare, bp_error *error)
 {
-	struct scene_word *word = memory_grown(words->word, words->count, &words->room, sizeof *word);
+	struct scene_word *word = memory_grown(words->word, words->count, sizeof *word);
 	if (!word)
 		return error_memory(error, words->count * sizeof *word);
 	words->word = word;

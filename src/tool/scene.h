@@ -20,7 +20,7 @@ struct scene_word {
 /* Words of all the files that were added; zeroed to begin with. */
 struct scene_words {
 	struct scene_word *word;
-	size_t count, room;
+	size_t count;
 };
 
 /* Adds the words of a regular file, those that could be a material's name or a measured file's path. Errors: BP_ERROR_IO, BP_ERROR_MEMORY. */

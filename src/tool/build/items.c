@@ -10,7 +10,7 @@
 
 bp_status items_add(struct items *items, const struct source_item *source, bool owned, bp_error *error)
 {
-	struct item *item = memory_grown(items->item, items->count, &items->room, sizeof *item);
+	struct item *item = memory_grown(items->item, items->count, sizeof *item);
 	if (!item) {
 		if (owned)
 			source_item_clear(&(struct source_item){source->name, source->path, source->member, 0, 0});

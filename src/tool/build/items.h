@@ -21,7 +21,7 @@ struct item {
 
 struct items {
 	struct item *item;
-	size_t count, room;
+	size_t count;
 };
 
 /* Appends; an owned source is taken over also on failure. */

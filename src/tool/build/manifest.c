@@ -160,7 +160,6 @@ bp_status manifest_parse(char *text, size_t bytes, struct manifest *out, bp_erro
 	struct manifest manifest = {.text = text};
 	struct parser parser = {.next = text, .end = text + bytes};
 	char *line, *cells[COLUMNS_MAX];
-	size_t room = 0;
 	bp_status status = BP_OK;
 
 	if (bytes >= 2 && (!memcmp(text, "\xFF\xFE", 2) || !memcmp(text, "\xFE\xFF", 2))) {
@@ -178,9 +177,9 @@ bp_status manifest_parse(char *text, size_t bytes, struct manifest *out, bp_erro
 		size_t count = columns_split(line, cells);
 		if (!parser.decided && columns_decide(&parser, cells, count))
 			continue;
-		struct manifest_entry *entries = memory_grown(manifest.entries, manifest.count, &room, sizeof *entries);
+		struct manifest_entry *entries = memory_grown(manifest.entries, manifest.count, sizeof *entries);
 		if (!entries) {
-			status = error_memory(error, room * sizeof *entries);
+			status = error_memory(error, manifest.count * sizeof *entries);
 			goto out;
 		}
 		manifest.entries = entries;

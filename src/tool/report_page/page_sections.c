@@ -11,7 +11,8 @@
 
 enum { WORST_COUNT = 10 };
 
-const char *path_leaf(const char *path)
+/* The last part of a path. */
+static const char *path_leaf(const char *path)
 {
 	const char *slash = strrchr(path, '/');
 	return slash && slash[1] ? slash + 1 : path;

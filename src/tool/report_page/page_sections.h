@@ -35,7 +35,4 @@ void page_sheet_write(FILE *out, const struct page *page);
 void page_archive_write(FILE *out, const struct page *page);
 void page_end_write(FILE *out);
 
-/* The last part of a path. */
-const char *path_leaf(const char *path);
-
 #endif
