@@ -264,6 +264,25 @@ class Packing(unittest.TestCase):
             for name in archive:
                 self.assertEqual(brdfpack.pack(os.path.join(HERE, "materials", name + ".binary")), archive[name].record())
 
+    def test_extracted_files_keep_their_records(self):
+        """As `build` does with the same options; a mask or another profile has them packed anew."""
+        tool("extract", "-C", "carrying", "demo.bpk")
+        with demo() as archive:
+            for name in list(archive)[:4]:
+                path, record = os.path.join(HERE, "carrying", name + ".binary"), archive[name].record()
+                self.assertEqual(brdfpack.pack(path), record)
+                with brdfpack.open(self.archive_of("new", brdfpack.pack(path, name="other"))) as renamed:
+                    self.assertEqual(renamed["new"].info.source_sha256, archive[name].info.source_sha256)
+                for anew in ({"profile": "paper"}, {"budget": len(record) - 1}, {"mask": np.ones(DIMS)}):
+                    self.assertNotEqual(brdfpack.pack(path, **anew), record)
+                self.assertNotEqual(brdfpack.pack(os.path.join(HERE, "extracted", name + ".binary")), record)
+        for options in (("--profile", "paper"), ("--max-error", "0.05"), ("--budget", "9000")):
+            tool("build", "-q", "--any-lattice", "--force", *options, "-o", "again.bpk", "carrying")
+            value = options[1] if options[0] == "--profile" else float(options[1]) if "." in options[1] else int(options[1])
+            with brdfpack.open(os.path.join(HERE, "again.bpk")) as again:
+                path = os.path.join(HERE, "carrying", name + ".binary")
+                self.assertEqual(brdfpack.pack(path, **{options[0][2:].replace("-", "_"): value}), again[name].record())
+
     def test_tables_of_all_kinds_give_the_same_record(self):
         table = self.table()
         expected = brdfpack.pack(table, budget=16_000)

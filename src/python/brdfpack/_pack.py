@@ -70,8 +70,8 @@ def pack(table, budget: int | None = None, *, name: str | None = None, max_error
     table: (H, D, P, 3) in 1/sr, or the path of a MERL file. A cell with a negative value, NaN or infinity in any channel counts as not
     measured, and so does one that is False in mask (H, D, P). budget: most bytes, 1000 to 4,000,000, 60,400 unless told; max_error:
     instead, the smallest record whose log RMSE is at most this. profile: "spectral" or "paper". effort: 1 to 9. progress is
-    called with the share that is done, 0 to 1; what it raises ends the packing. Of a measured file, with its name, this is the record that
-    `brdfpack build` makes; a file that `brdfpack extract` wrote is packed anew here.
+    called with the share that is done, 0 to 1; what it raises ends the packing. Of a file, with its name, this is the record that
+    `brdfpack build` makes: one that `brdfpack extract` wrote gives the record it carries, where `build` would keep it.
     """
     if profile not in PROFILES:
         raise ValueError(f"{profile!r} is neither 'spectral' nor 'paper'")
