@@ -1,4 +1,5 @@
 /* Packing from memory: the caller's table -> lattice -> record. */
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,7 @@
 enum { CHANNELS = 3, BUDGET_USUAL = 60400, EFFORT_USUAL = 5, EFFORT_MOST = 9 };
 #define ERROR_LEAST 1e-6
 #define ERROR_MOST 10.0
+#define VALUE_MOST 0x1p1015 /* 1/sr, beyond what a MERL file can say: sums and ratios of a few such values are still numbers */
 
 static bp_status options_read(const bp_pack_options *options, struct fit_options *fit, bp_error *error)
 {
@@ -60,7 +62,7 @@ static bp_status measured_check(const bp_measured *measured, bp_error *error)
 	return BP_OK;
 }
 
-/* Channel c in 1/sr, and what the mask takes out as not measured. */
+/* Channel c in 1/sr, finite values up to VALUE_MOST, and what the mask takes out as not measured. */
 static void plane_copy(const bp_measured *measured, size_t cells, int c, double scale, double *plane)
 {
 	const size_t step = measured->layout == BP_LAYOUT_INTERLEAVED ? CHANNELS : 1;
@@ -71,6 +73,8 @@ static void plane_copy(const bp_measured *measured, size_t cells, int c, double 
 	else
 		for (size_t n = 0; n < cells; n++)
 			plane[n] = (double)((const float *)measured->values)[first + n * step] * scale;
+	for (size_t n = 0; n < cells; n++)
+		plane[n] = plane[n] > VALUE_MOST && plane[n] <= DBL_MAX ? VALUE_MOST : plane[n];
 	for (size_t n = 0; measured->mask && n < cells; n++)
 		if (!measured->mask[n])
 			plane[n] = -1;
