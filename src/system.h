@@ -16,7 +16,8 @@
 #error "brdfpack needs gcc 12 or clang 14, or newer: older ones of gcc have no __builtin_shufflevector"
 #endif
 #if defined __FLT_EVAL_METHOD__ && __FLT_EVAL_METHOD__ != 0
-#error "brdfpack needs arithmetic in the precision of its operands; on 32-bit x86 compile with -msse2 -mfpmath=sse, on s390x with -fexcess-precision=fast"
+#error \
+	"brdfpack needs arithmetic in the precision of its operands; on 32-bit x86 compile with -msse2 -mfpmath=sse, on s390x with -fexcess-precision=fast"
 #endif
 
 struct system_file;
