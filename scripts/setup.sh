@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, and nothing that is already there.
 #
-#     scripts/setup.sh [build|test|slow|slurm|arm64|mitsuba|debian|bench|viewer]...      default: build
+#     scripts/setup.sh [build|test|slow|slurm|arm64|endian|mitsuba|debian|bench|viewer]...      default: build
 #
 #     build  what the tool and the library need
 #     test   what the unit tests (also those of the benchmark) and command-line tests need besides
 #     slow   what the clang, sanitizer and valgrind jobs need besides
 #     slurm  what the job on Slurm needs besides
 #     arm64  what the unit tests on ARM64, cross-compiled, need: adds that architecture to dpkg
+#     endian what the reader's tests on big-endian machines need: two cross compilers and qemu
 #     mitsuba  what the job with Mitsuba 3 needs besides
 #     debian  what makes and checks the Debian packages
 #     bench  what the benchmarks and their plots need besides
@@ -23,6 +24,7 @@ slow="clang:clang libclang-rt-14-dev valgrind:valgrind g++:g++"
 slurm="slurm-wlm munge"
 # not gcc-aarch64-linux-gnu, which gcc-multilib excludes
 arm64="gcc-12-aarch64-linux-gnu qemu-user:qemu-aarch64 libc6-dev=arm64 zlib1g-dev=arm64 libcmocka-dev=arm64 libarchive-dev=arm64 nettle-dev=arm64 libpng-dev=arm64"
+endian="gcc-12-s390x-linux-gnu libc6-dev-s390x-cross gcc-12-mips-linux-gnu libc6-dev-mips-cross qemu-user:qemu-s390x"
 mitsuba="libllvm19"
 debian="dpkg-dev debhelper lintian"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
@@ -36,12 +38,13 @@ for group in "${@:-build}"; do
 	slow) wanted+=" $slow" ;;
 	slurm) wanted+=" $slurm" ;;
 	arm64) wanted+=" $arm64" ;;
+	endian) wanted+=" $endian" ;;
 	mitsuba) wanted+=" $mitsuba" ;;
 	debian) wanted+=" $debian" ;;
 	bench) wanted+=" $bench" ;;
 	viewer) wanted+=" $viewer" ;;
 	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, mitsuba, debian, bench, viewer" >&2
+		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, endian, mitsuba, debian, bench, viewer" >&2
 		exit 2
 		;;
 	esac

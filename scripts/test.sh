@@ -6,7 +6,7 @@
 #     house     the plan of src: which wing may include which, that the map is true, and the sources' form
 #     unit      unit tests, built by gcc with warnings as errors
 #     cli       command-line tests (tests/cli)
-#     portable  the reading half: what it links, and its values without the system and on 32 bits
+#     portable  the reading half: what it links, and its values without the system, on 32 bits and on big-endian machines
 #     install   installs into a scratch folder; symbols; a consumer built through pkg-config
 #     python    the independent Python reader against the C library
 #     package   the Python package in a clean virtual environment (skipped where pip reaches no index)
@@ -159,7 +159,11 @@ job_clang() {
 	check "libraries by -flto" "$logs/lto.log" tests/lto.sh build/lto
 }
 job_install() { build test && check "installed library" "$logs/install.log" tests/install.sh build/test "${test_flags[@]}"; }
-job_portable() { build test && check "the reading half alone" "$logs/portable.log" tests/portable.sh build/test; }
+job_portable() {
+	build test || return
+	scripts/setup.sh endian >"$logs/setup-endian.log" 2>&1 || true
+	check "the reading half alone" "$logs/portable.log" tests/portable.sh build/test
+}
 job_mitsuba() {
 	build test || return
 	scripts/setup.sh mitsuba >"$logs/setup-mitsuba.log" 2>&1 || true

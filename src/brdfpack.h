@@ -464,8 +464,9 @@ typedef struct bp_pack_options {
 
 /*
  * Packs one material under a name (UTF-8, 1 to 255 bytes, no control character, no `/`, not `.` or `..`) into a record, which is freed with bp_free.
- * A cell with a mask of 0, or any channel that is negative, NaN or infinite, counts as not measured. The record depends on the
- * values, name, source and options only: with those of a file it is the one that `brdfpack build` makes. Uses the calling thread; several may
+ * A cell with a mask of 0, or any channel that is negative, NaN or infinite, counts as not measured; values above 2^1015 count as that. The record depends on the
+ * values, name, source and options only: with those of a file it is the one that `brdfpack build` makes: values of an
+ * extracted file, as double planes with MERL's scale and no mask, give the record that they carry, where `build` would keep it. Uses the calling thread; several may
  * pack at once. options NULL: as if zeroed. Needs some 90 MB for a MERL lattice.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an option, the name), BP_ERROR_LIMIT (the extents, or a budget or bound that cannot be
  * kept), BP_ERROR_BAD_INPUT (no valid cell), BP_ERROR_CANCELLED, BP_ERROR_MEMORY.

@@ -12,14 +12,12 @@
 
 #include "brdfpack.h"
 
-#if defined __BYTE_ORDER__ && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
-#error "brdfpack is for little-endian machines: its packed tables are made and read as they lie in memory"
-#endif
 #if defined __GNUC__ && !defined __clang__ && __GNUC__ < 12
 #error "brdfpack needs gcc 12 or clang 14, or newer: older ones of gcc have no __builtin_shufflevector"
 #endif
 #if defined __FLT_EVAL_METHOD__ && __FLT_EVAL_METHOD__ != 0
-#error "brdfpack needs arithmetic in the precision of its operands; on 32-bit x86 compile with -msse2 -mfpmath=sse"
+#error \
+	"brdfpack needs arithmetic in the precision of its operands; on 32-bit x86 compile with -msse2 -mfpmath=sse, on s390x with -fexcess-precision=fast"
 #endif
 
 struct system_file;

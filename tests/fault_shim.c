@@ -18,15 +18,27 @@ static char wanted; /* first letter of the kind; 0: none */
 static long at, always;
 static atomic_long calls;
 
-__attribute__((constructor)) static void begin(void)
+static void arm(const char *call, long number)
 {
-	const char *call = getenv("FAULT_CALL"), *number = getenv("FAULT_AT");
-	at = number ? atol(number) : 0;
-	always = getenv("FAULT_ALWAYS") != NULL;
-	wanted = call && at > 0 ? call[0] : 0;
+	at = number;
+	wanted = call && number > 0 ? call[0] : 0;
 	if (call && !strcmp(call, "rename"))
 		wanted = 'n';
+	atomic_store(&calls, 0);
 }
+
+__attribute__((constructor)) static void begin(void)
+{
+	const char *number = getenv("FAULT_AT");
+	always = getenv("FAULT_ALWAYS") != NULL;
+	arm(getenv("FAULT_CALL"), number ? atol(number) : 0);
+}
+
+/* For a program that looks these two up: the at-th call from now on; and whether it is still to come. */
+void fault_arm(const char *call, long number);
+int fault_armed(void);
+__attribute__((visibility("default"))) void fault_arm(const char *call, long number) { arm(call, number); }
+__attribute__((visibility("default"))) int fault_armed(void) { return atomic_load(&calls) < at; }
 
 static int fails(char kind)
 {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Faults survived: tests/faults.sh BUILD ASAN [--long]. BUILD holds brdfpack, tests/faults and tsan/tests/faults, ASAN tests/faults.
+# Faults survived: tests/faults.sh BUILD ASAN [--long]. BUILD holds brdfpack, and in tests/, tsan/tests/ and ASAN/tests/ what runs under faults.
 set -euo pipefail
 build=$PWD/$1
 asan=$PWD/$2
@@ -37,5 +37,10 @@ done
 "$asan/tests/faults" "${mutate[@]}" mutate many.bpk "$mutations"
 "$build/tests/faults" load many.bpk 10000
 "$build/tsan/tests/faults" threads many.bpk 100
+# the half that writes, as a library
+mkdir written
+LD_PRELOAD=$build/tests/fault_shim.so "$build/tests/write_faults" starve written
+"$build/tsan/tests/write_faults" threads
+"$asan/tests/write_faults" hostile
 # shellcheck disable=SC2086
 python3 "$here/faults.py" "$build/brdfpack" "$build/tests/fault_shim.so" $long

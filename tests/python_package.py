@@ -80,6 +80,27 @@ class Archives(unittest.TestCase):
         again = pickle.loads(pickle.dumps(caught.exception))
         self.assertEqual((again.status, str(again)), (4, str(caught.exception)))
 
+    def test_names_are_taken_whole(self):
+        """C's strings end at a NUL, and UTF-8 has no lone surrogates."""
+        with demo() as archive:
+            first = list(archive)[0]
+            for name in (first + "\0", first + "\0more", first[:2] + "\ud800", "\udcff"):
+                self.assertNotIn(name, archive)
+                with self.assertRaises(KeyError):
+                    archive[name]
+            record, writer = archive[first].record(), brdfpack.Writer(None)
+            for name in ("a\0b", "\ud800"):
+                with self.assertRaisesRegex(ValueError, "not a legal name"):
+                    writer.add(name, record)
+                with self.assertRaisesRegex(ValueError, "not a legal name"):
+                    brdfpack.pack(archive[first].table(), name=name)
+            with self.assertRaises(TypeError):
+                writer.add(3, record)
+        with self.assertRaisesRegex(ValueError, "null byte"):
+            brdfpack.Writer(os.path.join(HERE, "out\0.bpk"))
+        with self.assertRaisesRegex(ValueError, "null byte"):
+            brdfpack.open(os.path.join(HERE, "demo.bpk\0"))
+
     def test_damage_is_reported(self):
         with open(os.path.join(HERE, "demo.bpk"), "rb") as file:
             whole = file.read()
@@ -184,11 +205,18 @@ class Materials(unittest.TestCase):
             with self.assertRaises(ValueError):
                 self.material.evaluate(wi, wi, out=out)
 
+    def test_out_that_overlaps_is_refused(self):
+        both = np.zeros((9, 3), np.float32)
+        both[:, 2] = 1
+        for out in (both, both[:5]):
+            with self.assertRaisesRegex(ValueError, "overlaps"):
+                self.material.evaluate(both[4:] if len(out) == 5 else both, [0, 0, 1], out=out)
+
     def test_unusable_directions_and_empty_arrays(self):
         self.assertEqual(self.material.evaluate(np.zeros((0, 3)), np.zeros((0, 3))).shape, (0, 3))
         self.assertEqual(self.material.sample(np.zeros((0, 3)), np.zeros((0, 3))).pdf.shape, (0,))
         self.assertEqual(self.material.albedo([]).shape, (0, 3))
-        bad = np.array([[np.nan, 0, 1], [0, 0, 0], [0, 0, -1], [np.inf, 0, 1]])
+        bad = np.array([[np.nan, 0, 1], [0, 0, 0], [1e300, 0, -1], [np.inf, 0, 1]])
         self.assertTrue((self.material.evaluate(bad, [0, 0, 1]) == 0).all())
         self.assertTrue((self.material.pdf(bad, [0, 0, 1]) == 0).all())
         wi, pdf = self.material.sample(bad, np.full((4, 3), 0.5))
@@ -264,6 +292,26 @@ class Packing(unittest.TestCase):
             for name in archive:
                 self.assertEqual(brdfpack.pack(os.path.join(HERE, "materials", name + ".binary")), archive[name].record())
 
+    def test_extracted_files_keep_their_records(self):
+        """As `build` does with the same options; a mask or another profile has them packed anew."""
+        tool("build", "-q", "--any-lattice", "--budget", "5000", "-o", "small.bpk", "materials")  # which such small tables can carry
+        tool("extract", "-C", "carrying", "small.bpk")
+        with brdfpack.open(os.path.join(HERE, "small.bpk")) as archive:
+            for name in list(archive)[:4]:
+                path, record = os.path.join(HERE, "carrying", name + ".binary"), archive[name].record()
+                self.assertEqual(brdfpack.pack(path), record)
+                with brdfpack.open(self.archive_of("new", brdfpack.pack(path, name="other"))) as renamed:
+                    self.assertEqual(renamed["new"].info.source_sha256, archive[name].info.source_sha256)
+                for anew in ({"profile": "paper"}, {"budget": len(record) - 1}, {"mask": np.ones(DIMS)}):
+                    self.assertNotEqual(brdfpack.pack(path, **anew), record)
+                self.assertNotEqual(brdfpack.pack(os.path.join(HERE, "extracted", name + ".binary")), record)
+        for options in (("--profile", "paper"), ("--max-error", "0.05"), ("--budget", "9000")):
+            tool("build", "-q", "--any-lattice", "--force", *options, "-o", "again.bpk", "carrying")
+            value = options[1] if options[0] == "--profile" else float(options[1]) if "." in options[1] else int(options[1])
+            with brdfpack.open(os.path.join(HERE, "again.bpk")) as again:
+                path = os.path.join(HERE, "carrying", name + ".binary")
+                self.assertEqual(brdfpack.pack(path, **{options[0][2:].replace("-", "_"): value}), again[name].record())
+
     def test_tables_of_all_kinds_give_the_same_record(self):
         table = self.table()
         expected = brdfpack.pack(table, budget=16_000)
@@ -291,12 +339,18 @@ class Packing(unittest.TestCase):
                           (np.full(DIMS + (3,), np.nan), brdfpack.Error), (table[:3], brdfpack.Error), (-np.ones(DIMS + (3,)), brdfpack.Error)):
             with self.assertRaises(kind):
                 brdfpack.pack(bad)
-        for options in ({"budget": 10}, {"max_error": -1}, {"effort": 11}, {"name": "a/b"}, {"budget": 2**31}):
+        for options in ({"budget": 10}, {"max_error": -1}, {"effort": 11}, {"name": "a/b"}, {"name": ""}, {"budget": 2**31}):
             with self.assertRaises(brdfpack.Error):
                 brdfpack.pack(table, **options)
-        for options in ({"budget": 9000, "max_error": 0.1}, {"profile": "best"}, {"mask": np.ones((2, 2, 2))}):
+        for options in ({"budget": 9000, "max_error": 0.1}, {"profile": "best"}, {"effort": 0}, {"effort": -1}, {"budget": 0}, {"budget": 2**40},
+                        {"max_error": 0}, {"mask": np.ones((2, 2, 2))}):
             with self.assertRaises(ValueError):
                 brdfpack.pack(table, **options)
+        for options in ({"effort": "5"}, {"budget": 1e4}, {"name": b"x"}, {"progress": 3}):
+            with self.assertRaises(TypeError):
+                brdfpack.pack(table, **options)
+        with self.assertRaisesRegex(TypeError, "masked array"):
+            brdfpack.pack(np.ma.masked_less(table, 0))
         with self.assertRaises(FileNotFoundError):
             brdfpack.pack(os.path.join(HERE, "none.binary"))
         for data in (b"", b"abc", bytes(40), b"\x0c\0\0\0\x0a\0\0\0\x10\0\0\0" + bytes(9)):

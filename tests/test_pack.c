@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 
+#include "merl/merl_file.h"
 #include "packed_fixture.h"
 
 static const struct lattice_dims DIMS = {12, 10, 24};
@@ -132,6 +133,61 @@ static void scale_and_source_are_those_of_a_measured_file(void **state)
 	bp_free(plain.bytes);
 	bp_free(scaled.bytes);
 	bp_free(told.bytes);
+	free(t);
+}
+
+/* A table that carries its record keeps it, name and all that `build` asks of it considered; changed, masked or as floats it does not. */
+static void an_extracted_table_keeps_its_record(void **state)
+{
+	struct tables *t = tables_make();
+	uint8_t mask[CELLS], below[CELLS];
+	(void)state;
+	assert_int_equal(lattice_below_horizon(DIMS, LATTICE_MERL_HORIZON, below, NULL), BP_OK);
+	for (size_t n = 0; n < 3 * CELLS; n++)
+		t->planes[n] = below[n % CELLS] ? -1 : fabs(t->planes[n]) + 0.1 * sin((double)n);
+	bp_measured measured = measured_of(t->planes, BP_NUMBER_DOUBLE, BP_LAYOUT_PLANES);
+	const bp_pack_options small = {.struct_bytes = sizeof small, .budget_bytes = 1500};
+	struct packed first = pack(&measured, "a", &small), all = pack(&measured, "a", NULL);
+	assert_true(all.count > first.count);
+	/* what extract would write */
+	struct record_head head;
+	struct model *model;
+	struct expansion table = {0};
+	assert_int_equal(record_head_parse(first.bytes, first.count, &head, NULL), BP_OK);
+	assert_int_equal(record_decode_whole(&head, 0, first.bytes, &model, NULL), BP_OK);
+	assert_int_equal(expansion_alloc(DIMS, &table, NULL), BP_OK);
+	assert_int_equal(model_expand(model, 0, &table, NULL), BP_OK);
+	assert_int_equal(lattice_below_horizon(DIMS, head.horizon_limit, below, NULL), BP_OK);
+	assert_int_equal(lattice_write_path(fixture_path("a.binary"), OUTPUT_REPLACE, &table, below, first.bytes, first.count, NULL),
+	                 BP_OK);
+	size_t file_bytes;
+	uint8_t *file = fixture_file_read(fixture_path("a.binary"), &file_bytes);
+	assert_int_equal(file_bytes, 12 + sizeof t->planes);
+	memcpy(t->planes, file + 12, sizeof t->planes);
+	for (int c = 0; c < 3; c++)
+		measured.scale[c] = MERL_SCALE[c];
+	struct packed kept = pack(&measured, "a", NULL), renamed = pack(&measured, "other", NULL);
+	assert_same(kept, first);
+	assert_int_equal(renamed.count, first.count + 4);
+
+	memset(mask, 1, sizeof mask);
+	measured.mask = mask;
+	struct packed masked = pack(&measured, "a", NULL);
+	assert_true(masked.count != first.count);
+	measured.mask = NULL;
+	for (size_t n = 0; n < CELLS; n++)
+		if (!below[n]) {
+			t->planes[n] *= 1.0000001;
+			break;
+		}
+	struct packed changed = pack(&measured, "a", NULL);
+	assert_true(changed.count != first.count);
+	struct packed *const all_of_them[] = {&first, &all, &kept, &renamed, &masked, &changed};
+	for (size_t n = 0; n < sizeof all_of_them / sizeof *all_of_them; n++)
+		bp_free(all_of_them[n]->bytes);
+	model_free(model);
+	expansion_free(&table);
+	free(file);
 	free(t);
 }
 
@@ -476,6 +532,7 @@ int main(void)
 		cmocka_unit_test(all_layouts_and_numbers_give_the_record_of_the_lattice),
 		cmocka_unit_test(a_mask_says_what_negative_values_say),
 		cmocka_unit_test(scale_and_source_are_those_of_a_measured_file),
+		cmocka_unit_test(an_extracted_table_keeps_its_record),
 		cmocka_unit_test(options_are_those_of_build),
 		cmocka_unit_test(bad_tables_are_refused),
 		cmocka_unit_test(progress_is_told_and_any_call_may_cancel),

@@ -44,14 +44,17 @@ FAULTS_ASAN  ?= $(BUILD)/asan
 $(BUILD)/tests/faults: $(addprefix $(BUILD)/,tests/faults.o tests/archive_walk.o src/tool/facts.o src/tool/json.o internal.a)
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lpthread $(LIBRARY_LIBS)
+$(BUILD)/tests/write_faults: $(addprefix $(BUILD)/,tests/write_faults.o internal.a)
+	$(call SAY,LD    $@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lpthread -ldl $(LIBRARY_LIBS)
 $(BUILD)/tests/fault_shim.so: tests/fault_shim.c
 	@mkdir -p $(@D)
 	$(call SAY,LD    $@)
 	$(Q)$(CC) $(REQUIRED) $(WARNINGS) -O1 -fPIC -shared -o $@ $< -ldl
 faults-build: all
-	$(Q)$(MAKE) --no-print-directory $(BUILD)/tests/faults $(BUILD)/tests/fault_shim.so
-	$(Q)$(MAKE) --no-print-directory BUILD=$(FAULTS_ASAN) CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow $(FAULTS_ASAN)/tests/faults
-	$(Q)$(MAKE) --no-print-directory BUILD=$(BUILD)/tsan CFLAGS="-O1 -g" SANITIZE=thread $(BUILD)/tsan/tests/faults
+	$(Q)$(MAKE) --no-print-directory $(BUILD)/tests/faults $(BUILD)/tests/write_faults $(BUILD)/tests/fault_shim.so
+	$(Q)$(MAKE) --no-print-directory BUILD=$(FAULTS_ASAN) CFLAGS="-O1 -g" SANITIZE=address,undefined,float-cast-overflow $(addprefix $(FAULTS_ASAN)/tests/,faults write_faults)
+	$(Q)$(MAKE) --no-print-directory BUILD=$(BUILD)/tsan CFLAGS="-O1 -g" SANITIZE=thread $(addprefix $(BUILD)/tsan/tests/,faults write_faults)
 faults: faults-build
 	$(Q)tests/faults.sh $(BUILD) $(FAULTS_ASAN) $(FAULTS_FLAGS)
 

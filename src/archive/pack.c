@@ -1,14 +1,16 @@
 /* Packing from memory: the caller's table -> lattice -> record. */
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "codec/record.h"
+#include "codec/record_carried.h"
 #include "environment.h"
 #include "error.h"
 
 enum { CHANNELS = 3, EFFORT_MOST = 9 };
 #define ERROR_LEAST 1e-6
 #define ERROR_MOST 10.0
+#define VALUE_MOST 0x1p1015 /* 1/sr, beyond what a MERL file can say: sums and ratios of a few such values are still numbers */
 
 static bp_status options_read(const bp_pack_options *options, struct fit_options *fit, bp_error *error)
 {
@@ -59,7 +61,7 @@ static bp_status measured_check(const bp_measured *measured, bp_error *error)
 	return BP_OK;
 }
 
-/* Channel c in 1/sr, and what the mask takes out as not measured. */
+/* Channel c in 1/sr, finite values up to VALUE_MOST, and what the mask takes out as not measured. */
 static void plane_copy(const bp_measured *measured, size_t cells, int c, double scale, double *plane)
 {
 	const size_t step = measured->layout == BP_LAYOUT_INTERLEAVED ? CHANNELS : 1;
@@ -70,6 +72,8 @@ static void plane_copy(const bp_measured *measured, size_t cells, int c, double 
 	else
 		for (size_t n = 0; n < cells; n++)
 			plane[n] = (double)((const float *)measured->values)[first + n * step] * scale;
+	for (size_t n = 0; n < cells; n++)
+		plane[n] = plane[n] > VALUE_MOST && plane[n] <= DBL_MAX ? VALUE_MOST : plane[n];
 	for (size_t n = 0; measured->mask && n < cells; n++)
 		if (!measured->mask[n])
 			plane[n] = -1;
@@ -94,12 +98,47 @@ static bp_status lattice_make(const bp_measured *measured, struct lattice *latti
 	return BP_OK;
 }
 
+/* What an extracted file's values carry below the horizon: found as they lie in the file only. *carried is the caller's to free. */
+static bp_status carried_take(const bp_measured *measured, size_t cells, struct carried *carried, bp_error *error)
+{
+	struct carried_reader reader = {.values = CHANNELS * cells};
+	if (measured->number != BP_NUMBER_DOUBLE || measured->layout != BP_LAYOUT_PLANES || measured->mask)
+		return BP_OK;
+	const bool found = carried_find(&reader, measured->values, reader.values);
+	if (found && reader.whole)
+		*carried = (struct carried){reader.bytes, reader.count};
+	else
+		free(reader.bytes);
+	return found ? BP_OK : error_memory(error, reader.count);
+}
+
+/* The record that came with the lattice, if it still is that table's, as `build` does; or one that is fitted. */
+static bp_status record_make(const bp_measured *measured, const struct lattice *lattice, const char *name,
+                             const struct fit_options *options, uint8_t **record, size_t *record_bytes, bp_error *error)
+{
+	struct record_source source = {.bytes = measured->source_bytes, .nonfinite_count = lattice->nonfinite_count};
+	struct carried carried = {0};
+	uint8_t *kept = NULL;
+	size_t kept_bytes = 0;
+	memcpy(source.sha256, measured->source_sha256, sizeof source.sha256);
+	bp_status status = carried_take(measured, lattice_cells(lattice->dims), &carried, error);
+	if (!status)
+		status = record_carried(lattice, &carried, name, options, &kept, &kept_bytes, error);
+	free(carried.bytes);
+	if (!status && kept) {
+		*record = kept;
+		*record_bytes = kept_bytes;
+	} else if (!status) {
+		status = record_encode(lattice, name, &source, options, record, record_bytes, NULL, error);
+	}
+	return status;
+}
+
 bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_options *options, uint8_t **record,
                   size_t *record_bytes, bp_error *error)
 {
 	struct fit_options fit;
 	struct lattice lattice = {0};
-	struct record_source source = {0};
 	fenv_t before;
 
 	if (!name || !record || !record_bytes)
@@ -115,12 +154,8 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 	status = watch_tell(fit.watch, 0, error);
 	if (!status)
 		status = lattice_make(measured, &lattice, error);
-	if (!status) {
-		source.bytes = measured->source_bytes;
-		source.nonfinite_count = lattice.nonfinite_count;
-		memcpy(source.sha256, measured->source_sha256, sizeof source.sha256);
-		status = record_encode(&lattice, name, &source, &fit, record, record_bytes, NULL, error);
-	}
+	if (!status)
+		status = record_make(measured, &lattice, name, &fit, record, record_bytes, error);
 	lattice_free(&lattice);
 	environment_leave(&before);
 	return status;

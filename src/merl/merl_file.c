@@ -12,7 +12,8 @@
 #include "error.h"
 #include "output_file.h"
 
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "MERL files are little-endian; a big-endian machine needs a swap here");
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+               "the writing half of brdfpack is for little-endian machines: it takes MERL files as they lie in memory");
 
 enum { HEADER_BYTES = 12, CHUNK_VALUES = 1 << 15 }; /* 256 KB: read, hashed and checked while in the cache */
 

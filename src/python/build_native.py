@@ -5,7 +5,8 @@ import re
 from cffi import FFI
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SRC = os.path.dirname(HERE)
+CARRIED = os.path.join(HERE, "tree", "src")  # in a source distribution (setup.py)
+SRC = CARRIED if os.path.isdir(CARRIED) else os.path.dirname(HERE)
 
 
 def declarations(path):

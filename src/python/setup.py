@@ -1,13 +1,16 @@
-"""Builds the package over the project's C sources, which lie beside this folder: pip install ./src/python in a checkout."""
+"""Builds the package over the project's C sources: beside this folder in a checkout, within it in a source distribution."""
 import glob
 import os
 import re
+import shutil
 
 from setuptools import setup
 from setuptools.command.build_ext import build_ext
+from setuptools.command.sdist import sdist
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SRC = os.path.dirname(HERE)
+CARRIED = os.path.join(HERE, "tree")  # what sdist takes along: the Makefile and the library's sources, as in a checkout
+SRC = os.path.join(CARRIED, "src") if os.path.isdir(CARRIED) else os.path.dirname(HERE)
 WINGS = ("", "merl", "model", "model/*", "codec", "codec/*", "archive")
 FLAGS = ["-std=c17", "-O3", "-D_GNU_SOURCE", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden",
          "-ffunction-sections", "-fdata-sections"]
@@ -44,4 +47,17 @@ class build_library_too(build_ext):
         super().build_extension(ext)
 
 
-setup(version=version(), cffi_modules=["build_native.py:ffi"], cmdclass={"build_ext": build_library_too})
+class sdist_with_sources(sdist):
+    """The C library's sources too, which a checkout has outside of this folder."""
+
+    def make_release_tree(self, base_dir, files):
+        super().make_release_tree(base_dir, files)
+        root = os.path.dirname(SRC)
+        wanted = [os.path.join(root, "Makefile")] + [path for wing in WINGS for path in glob.glob(os.path.join(SRC, wing, "*.[ch]"))]
+        own = [os.path.join(HERE, name) for name in ("build_native.py", "strided.c", "strided.h")]
+        for path, to in [(p, os.path.join("tree", os.path.relpath(p, root))) for p in wanted] + [(p, os.path.basename(p)) for p in own]:
+            os.makedirs(os.path.dirname(os.path.join(base_dir, to)), exist_ok=True)
+            shutil.copyfile(path, os.path.join(base_dir, to))
+
+
+setup(version=version(), cffi_modules=["build_native.py:ffi"], cmdclass={"build_ext": build_library_too, "sdist": sdist_with_sources})

@@ -26,6 +26,17 @@
 enum { COMPACT_HEAD_SHIFT = 14 }; /* of the 16-bit floats */
 enum { COMPACT_WIDTH_MAX = 18, COMPACT_RESIDUALS = 4, COMPACT_SHARES = 23, COMPACT_BLOCK_RGB = 32, COMPACT_BLOCK_MONO = 24 };
 
+/* A block's numbers have their low byte first, whatever the machine's order: from its own order to that, or back. */
+#if defined __BYTE_ORDER__ && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define LOW_FIRST_16(number) __builtin_bswap16(number)
+#define LOW_FIRST_32(number) __builtin_bswap32(number)
+#define LOW_FIRST_64(number) __builtin_bswap64(number)
+#else
+#define LOW_FIRST_16(number) (number)
+#define LOW_FIRST_32(number) (number)
+#define LOW_FIRST_64(number) (number)
+#endif
+
 /* Sets the table's row, width, shares and store from an expansion whose largest value (in its own unit) is `largest`. */
 bp_status compact_fill(struct table *table, const struct expansion *expansion, float largest, bp_error *error);
 

@@ -44,26 +44,26 @@ static inline uint64_t KERNEL(load64)(const uint8_t *at)
 {
 	uint64_t value;
 	memcpy(&value, at, sizeof value);
-	return value;
+	return LOW_FIRST_64(value);
 }
 
 static inline uint32_t KERNEL(load32)(const uint8_t *at)
 {
 	uint32_t value;
 	memcpy(&value, at, sizeof value);
-	return value;
+	return LOW_FIRST_32(value);
 }
 
 static inline uint32_t KERNEL(load16)(const uint8_t *at)
 {
 	uint16_t value;
 	memcpy(&value, at, sizeof value);
-	return value;
+	return LOW_FIRST_16(value);
 }
 
 /*
  * Lanes of eight hold two values of each of the four rows: those at two cells along phi_d, or two codes. The first byte of two is the low
- * one: this form is made and read on little-endian machines only.
+ * one.
  */
 static inline void KERNEL(compact_residuals)(const struct compact_view *v, f32x8 *out)
 {

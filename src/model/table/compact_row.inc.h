@@ -122,8 +122,8 @@ static void KERNEL(compact_roots)(const float *root, uint32_t count, uint8_t *bl
 	uint16_t step =
 		(uint16_t)((bits_of_float((high - from) * (1.0f / 255)) + (1u << COMPACT_HEAD_SHIFT) - 1) >> COMPACT_HEAD_SHIFT);
 	float width = float_of_bits((uint32_t)step << COMPACT_HEAD_SHIFT), per = width > 0x1p-120f ? 1 / width : 0;
-	memcpy(block, &base, sizeof base);
-	memcpy(block + 2, &step, sizeof step);
+	const uint16_t head[2] = {LOW_FIRST_16(base), LOW_FIRST_16(step)};
+	memcpy(block, head, sizeof head);
 	/* What lies past the count means nothing: the shares' codes come there, or nobody reads it. */
 	i32x4 code[CELLS_MAX / 4];
 	for (int k = 0; k < CELLS_MAX / 4; k++) {

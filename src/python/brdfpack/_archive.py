@@ -7,9 +7,10 @@ import threading
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from ._error import Error, NoPickle, check
+from ._error import Error, NoPickle, NotFound, check
 from ._material import Material, table_read
 from ._native import ffi, lib
+from ._text import name_bytes, path_bytes
 
 FORMS = {"expanded": lib.BP_FORM_EXPANDED, "compact": lib.BP_FORM_COMPACT, "preview": lib.BP_FORM_PREVIEW}
 COLOURS = {"rgb": lib.BP_COLOUR_RGB, "mean": lib.BP_COLOUR_MEAN}
@@ -17,33 +18,33 @@ PROFILES = {1: "paper", 2: "spectral"}
 
 
 class Layer(NamedTuple):
-    """A set of sections: what loading it costs, and what error is left."""
+    """A set of sections: what loading it costs, and what error is left against the measured values b, decoded e, in 1/sr."""
 
-    bytes: int
-    log_rmse: float
-    cube_root_rmse: float
-    largest_relative: float
+    bytes: int  # of the record up to and including this layer
+    log_rmse: float  # rms of log10((e + 1e-3)/(b + 1e-3)) over the valid cells and channels
+    cube_root_rmse: float  # rms of cbrt(b cos) - cbrt(e cos), cos the smaller cosine of the two directions
+    largest_relative: float  # the largest |e - b|/(b + 1e-2)
     seen_log_rmse: float  # log_rmse over the valid cells that do not lie wholly below the horizon
 
 
 class Section(NamedTuple):
-    """A part of a record with a checksum of its own."""
+    """A part of a record with a checksum of its own. type, codec, version, flags: numbers of FORMAT.md."""
 
     type: int
     codec: int
     version: int
-    layer: int
+    layer: int  # the first that needs it
     flags: int
     bytes: int
-    error: float
+    error: float  # its own figure, or NaN
 
 
 class Channel(NamedTuple):
-    """The robust regression of one channel."""
+    """The robust regression of one channel's measured values, diffuse + specular x (bp_channel of brdfpack.h says what x is)."""
 
-    diffuse: float
-    specular: float
-    rejected: float
+    diffuse: float  # 1/sr
+    specular: float  # a ratio
+    rejected: float  # share of the valid cells without weight, 0 to 1
     iterations: int
     converged: bool
 
@@ -56,7 +57,12 @@ class Problem(NamedTuple):
 
 
 class Info(NamedTuple):
-    """What a record's head says. shape: cells (H, D, P); source_sha256: of the measured file, 32 bytes."""
+    """What a record's head says.
+
+    shape: cells (H, D, P); record_offset: in the file; channels: of R, G, B; effort, budget_bytes and max_error: the options it was made with
+    (max_error 0: a budget was asked for); source_bytes, source_sha256 (32 bytes): of the measured file; source_nonfinite: its cells with
+    NaN or infinity; horizon_limit: the lowest cosine at which anything was measured, -1 to 0; left_out: bp_material_info of brdfpack.h.
+    """
 
     name: str
     profile: str
@@ -128,7 +134,7 @@ class Entry(NoPickle):
     def load(self, max_error: float = 0.0, form: str = "expanded", colour: str = "rgb", sampling: bool = False) -> Material:
         """As Archive.load."""
         for value, known in ((form, FORMS), (colour, COLOURS)):
-            if value not in known:
+            if value not in tuple(known):
                 raise ValueError(f"{value!r} is none of {', '.join(known)}")
         error, material = ffi.new("bp_error *"), ffi.new("bp_material **")
         options = ffi.new("bp_load_options *", {"struct_bytes": ffi.sizeof("bp_load_options"), "max_log_rmse": max_error, "form": FORMS[form],
@@ -139,7 +145,7 @@ class Entry(NoPickle):
         return Material(material[0], self.name, record, max_error, shape)
 
     def table(self, max_error: float = 0.0, dtype="float32", continued: bool = False):
-        """The decoded table without loading the material; as Material.table."""
+        """The decoded table without loading the material: (H, D, P, 3), 1/sr; max_error as in Archive.load, the rest as in Material.table."""
         shape = self.info.shape
         with self._archive._open() as handle:
             return table_read(handle, self._index, shape, max_error, dtype, continued)
@@ -196,11 +202,13 @@ class Archive(Mapping, NoPickle):
             yield ffi.string(name).decode()
 
     def _find(self, name: str) -> int:
-        if not isinstance(name, str):
-            raise TypeError(f"materials are called by str, not {type(name).__name__}")
         error, index = ffi.new("bp_error *"), ffi.new("uint64_t *")
         with self._open() as handle:
-            check(lib.bp_archive_find(handle, name.encode("utf-8", "surrogateescape"), index, error), error)
+            try:
+                sought = name_bytes(name)
+            except ValueError:
+                raise NotFound(lib.BP_ERROR_NOT_FOUND, f"there is no material {name!r}") from None
+            check(lib.bp_archive_find(handle, sought, index, error), error)
         return index[0]
 
     def __contains__(self, name: object) -> bool:
@@ -221,7 +229,8 @@ class Archive(Mapping, NoPickle):
     def load(self, name: str, max_error: float = 0.0, form: str = "expanded", colour: str = "rgb", sampling: bool = False) -> Material:
         """Loads a material to evaluate.
 
-        max_error: > 0: the fewest layers whose log RMSE is at most this, all where none is; 0: all. form: "expanded", "compact" (a third
+        max_error: > 0: the fewest layers whose recorded log RMSE over the cells above the horizon (Layer.seen_log_rmse) is at most this,
+        all where none is; 0: all. form: "expanded", "compact" (a third
         of the memory) or "preview" (every second value, quick). colour: "rgb" or "mean". sampling: also what sample, pdf and albedo need.
         """
         return self[name].load(max_error, form, colour, sampling)
@@ -274,7 +283,10 @@ class Use:
 
 
 def open(source) -> Archive:  # noqa: A001
-    """Opens the archive at a path, or one that bytes hold."""
+    """Opens the archive at a path, or one that bytes hold, which are not copied.
+
+    Raises what Python's open would for a file that cannot be opened, and Error for one that is no archive, or damaged.
+    """
     error, handle = ffi.new("bp_error *"), ffi.new("bp_archive **")
     if isinstance(source, bytes):
         held = ffi.from_buffer(source)
@@ -284,7 +296,7 @@ def open(source) -> Archive:  # noqa: A001
         return archive
     path = os.fspath(source)
     try:
-        check(lib.bp_archive_open(os.fsencode(path), handle, error), error)
+        check(lib.bp_archive_open(path_bytes(path), handle, error), error)
     except Error as refused:
         name = path if isinstance(path, str) else os.fsdecode(path)
         if refused.status == lib.BP_ERROR_IO:

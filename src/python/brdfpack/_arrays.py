@@ -9,11 +9,14 @@ FLOAT = np.dtype(np.float32)
 
 
 def real(values, what: str) -> np.ndarray:
-    """An array of float32, copied only where it is something else."""
+    """An array of float32, copied only where it is something else; what exceeds a float becomes infinite."""
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{what} holds {array.dtype}, not real numbers")
-    return array.astype(FLOAT, copy=False)
+    if array.dtype == FLOAT:
+        return array.astype(FLOAT, copy=False)
+    with np.errstate(over="ignore"):
+        return array.astype(FLOAT)
 
 
 def vectors(values, what: str) -> np.ndarray:
@@ -44,14 +47,16 @@ def strided(array: np.ndarray):
     return (ffi.cast("const float *", array.ctypes.data), array.strides[0] // FLOAT.itemsize, array.strides[1] // FLOAT.itemsize), array
 
 
-def result(out: np.ndarray | None, shape: tuple[int, ...]) -> np.ndarray:
-    """A new array, or the caller's own, checked."""
+def result(out: np.ndarray | None, shape: tuple[int, ...], *inputs: np.ndarray) -> np.ndarray:
+    """A new array, or the caller's own, checked: it may share no memory with the inputs."""
     if out is None:
         return np.empty(shape, FLOAT)
     if not isinstance(out, np.ndarray) or out.dtype != FLOAT or out.shape != shape or not out.flags.c_contiguous:
         raise ValueError(f"out must be a C-contiguous float32 array of shape {shape}")
     if not out.flags.writeable:
         raise ValueError("out is read-only")
+    if any(np.may_share_memory(out, array) for array in inputs):
+        raise ValueError("out overlaps an input")
     return out
 
 

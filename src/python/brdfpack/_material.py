@@ -27,6 +27,8 @@ def table_read(handle, index: int, shape: tuple[int, int, int], max_error: float
 
 
 class Sample(NamedTuple):
+    """What Material.sample draws: unit vectors (..., 3), and their densities per solid angle (...)."""
+
     wi: np.ndarray
     pdf: np.ndarray
 
@@ -34,8 +36,9 @@ class Sample(NamedTuple):
 class Material(NoPickle):
     """One material, ready to evaluate; brdfpack.Archive.load makes it. It never changes and outlives its archive.
 
-    name: str; layers: how many of its record's were loaded; log_rmse: their recorded error; memory_bytes: what it occupies;
-    shape: (H, D, P), values along theta_h, theta_d and phi_d.
+    name: str; layers: how many of its record's were loaded; log_rmse: their recorded error over all measured cells;
+    memory_bytes: what it occupies; shape: (H, D, P), values along theta_h, theta_d and phi_d, of a preview half the lattice's; sampling:
+    whether sample, pdf and albedo can be called. Any number of threads may use it at once, and a forked process its copy.
     """
 
     def __init__(self, handle, name: str, record: bytes, max_error: float, shape: tuple[int, int, int]):
@@ -64,10 +67,11 @@ class Material(NoPickle):
         """f(wi, wo) in 1/sr.
 
         wi, wo: (n, 3), or any shapes (..., 3) that broadcast; float32 is taken as it is, other real numbers are converted.
-        Returns (n, 3) float32, R G B; out: such an array to write to, C-contiguous, which must not overlap the inputs.
+        Returns (n, 3) float32, R G B, finite and not negative; out: such an array to write to, C-contiguous, which must not overlap
+        the inputs. ValueError for other shapes, TypeError for what are no real numbers.
         """
         wi, wo, lead = together(vectors(wi, "wi"), vectors(wo, "wo"), "wi and wo")
-        rgb = result(out, lead + (3,))
+        rgb = result(out, lead + (3,), wi, wo)
         (a, keep_a), (b, keep_b) = strided(wi), strided(wo)
         lib.strided_evaluate(self._handle, len(wi), *a, *b, pointer(rgb))
         del keep_a, keep_b
@@ -88,7 +92,7 @@ class Material(NoPickle):
         return Sample(wi, pdf)
 
     def pdf(self, wi, wo) -> np.ndarray:
-        """The density of sample per solid angle: (n,) float32 for wi and wo of (n, 3)."""
+        """The density of sample per solid angle: (n,) float32 for wi and wo of (n, 3), or shapes that broadcast; 0 for unusable ones."""
         self._needs_sampling()
         wi, wo, lead = together(vectors(wi, "wi"), vectors(wo, "wo"), "wi and wo")
         pdf = np.empty(lead, np.float32)
@@ -98,7 +102,11 @@ class Material(NoPickle):
         return pdf
 
     def albedo(self, theta) -> np.ndarray:
-        """The directional albedo, R G B, for theta_o in radians, 0 <= theta < pi/2 (0 elsewhere): (..., 3) for theta of shape (...)."""
+        """The directional albedo, the integral of f cos theta_i over wi, R G B: (..., 3) float32 for theta of shape (...).
+
+        theta: theta_o in radians, 0 <= theta < pi/2; elsewhere and for NaN it is 0. Measurements can exceed 1. An angle that is asked
+        for first takes some milliseconds.
+        """
         self._needs_sampling()
         theta = real(theta, "theta")
         rgb = np.empty(theta.shape + (3,), np.float32)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import hashlib
+import operator
 import os
 import threading
 from collections.abc import Callable
@@ -10,6 +11,7 @@ import numpy as np
 
 from ._error import Error, NoPickle, check
 from ._native import ffi, lib
+from ._text import name_bytes, path_bytes
 
 PROFILES = {"paper": 1, "spectral": 2}
 MERL_SCALE = (1.0 / 1500, 1.15 / 1500, 1.66 / 1500)
@@ -63,20 +65,34 @@ def table_take(table) -> tuple[np.ndarray, int, tuple[int, ...]]:
     return np.ascontiguousarray(values, kind), lib.BP_LAYOUT_INTERLEAVED, values.shape[:3]
 
 
+def option(value, what: str) -> int:
+    """A whole number above 0 for the library, which refuses what is beyond its limits; 0, its own choice, for None."""
+    if value is None:
+        return 0
+    number = operator.index(value)
+    if not 0 < number < 2**32:
+        raise ValueError(f"{what} is {number}, out of range")
+    return number
+
+
 def pack(table, budget: int | None = None, *, name: str | None = None, max_error: float | None = None, profile: str = "spectral",
          effort: int = 5, mask=None, progress: Callable[[float], object] | None = None) -> bytes:
     """Packs one material into a record, which Writer.add takes.
 
-    table: (H, D, P, 3) in 1/sr, or the path of a MERL file. A cell with a negative value, NaN or infinity in any channel counts as not
+    table: (H, D, P, 3) real numbers in 1/sr, extents from 4 to 1024, or the path of a MERL file. A cell with a negative value, NaN or infinity in any channel counts as not
     measured, and so does one that is False in mask (H, D, P). budget: most bytes, 1000 to 4,000,000, 60,400 unless told; max_error:
-    instead, the smallest record whose log RMSE is at most this. profile: "spectral" or "paper". effort: 1 to 9. progress is
-    called with the share that is done, 0 to 1; what it raises ends the packing. Of a measured file, with its name, this is the record that
-    `brdfpack build` makes; a file that `brdfpack extract` wrote is packed anew here.
+    instead, the smallest record whose log RMSE is at most this, 1e-6 to 10. profile: "spectral" or "paper". effort: 1 to 9. progress is
+    called with the share that is done, 0 to 1; what it raises ends the packing. Of a file, with its name, this is the record that
+    `brdfpack build` makes: one that `brdfpack extract` wrote gives the record it carries, where `build` would keep it.
     """
     if profile not in PROFILES:
         raise ValueError(f"{profile!r} is neither 'spectral' nor 'paper'")
     if budget is not None and max_error is not None:
         raise ValueError("a budget and an error bound exclude each other")
+    if max_error == 0:
+        raise ValueError("max_error is 0; 1e-6 to 10 are possible")
+    if isinstance(table, np.ma.MaskedArray):
+        raise TypeError("the table is a masked array; give table.data, and mask=~table.mask.any(axis=3)")
     if isinstance(table, (str, bytes, os.PathLike)):
         path = os.fsdecode(table)
         values, scale, source_bytes, sha256 = merl_read(path)
@@ -100,9 +116,9 @@ def pack(table, budget: int | None = None, *, name: str | None = None, max_error
         "values": ffi.cast("void *", values.ctypes.data), "mask": ffi.cast("uint8_t *", masked.ctypes.data) if masked is not None else ffi.NULL,
         "scale": scale, "source_bytes": source_bytes, "source_sha256": sha256})
     options = ffi.new("bp_pack_options *", {
-        "struct_bytes": ffi.sizeof("bp_pack_options"), "profile": PROFILES[profile], "budget_bytes": budget or 0, "max_error": max_error or 0.0,
-        "effort": effort, "progress": lib.tell_python if watched else ffi.NULL, "user": handle})
-    status = lib.bp_pack(measured, (name or "material").encode(), options, record, count, error)
+        "struct_bytes": ffi.sizeof("bp_pack_options"), "profile": PROFILES[profile], "budget_bytes": option(budget, "budget"), "max_error": max_error or 0.0,
+        "effort": option(effort, "effort"), "progress": lib.tell_python if watched else ffi.NULL, "user": handle})
+    status = lib.bp_pack(measured, name_bytes("material" if name is None else name), options, record, count, error)
     if watch.raised is not None:
         lib.bp_free(record[0])
         raise watch.raised
@@ -126,7 +142,7 @@ class Writer(NoPickle):
         error, handle = ffi.new("bp_error *"), ffi.new("bp_writer **")
         check(lib.bp_writer_create(handle, error), error)
         self._handle = ffi.gc(handle[0], lib.bp_writer_free)
-        self._path = None if path is None else os.fspath(path)
+        self._path = None if path is None else path_bytes(path)
         self._lock = threading.Lock()
         self._closed = False
 
@@ -134,7 +150,7 @@ class Writer(NoPickle):
         return lib.bp_writer_count(self._handle)
 
     def add(self, name: str | None, record: bytes) -> None:
-        """Adds a record under a name, or, name None, under its own."""
+        """Adds a record under a name, or, name None, under its own. A record that is refused leaves the writer as it was."""
         if not isinstance(record, bytes):
             raise TypeError(f"a record is bytes, as brdfpack.pack gives it, not {type(record).__name__}")
         error = ffi.new("bp_error *")
@@ -145,7 +161,7 @@ class Writer(NoPickle):
                 check(lib.bp_writer_add(self._handle, record, len(record), error), error)
                 return
             out, count = ffi.new("uint8_t **"), ffi.new("size_t *")
-            check(lib.bp_record_rename(record, len(record), name.encode(), out, count, error), error)
+            check(lib.bp_record_rename(record, len(record), name_bytes(name), out, count, error), error)
             try:
                 check(lib.bp_writer_add(self._handle, out[0], count[0], error), error)
             finally:
@@ -168,7 +184,7 @@ class Writer(NoPickle):
                 return
             if self._path is not None:
                 error = ffi.new("bp_error *")
-                check(lib.bp_writer_save(self._handle, os.fsencode(self._path), error), error)
+                check(lib.bp_writer_save(self._handle, self._path, error), error)
             self._closed = True
 
     def __enter__(self) -> "Writer":
