@@ -7,6 +7,9 @@
 #include "error.h"
 #include "stage.h"
 
+_Static_assert((int)BP_ZEROS_HOLES == (int)ZEROS_HOLES && (int)BP_ZEROS_MEASURED == (int)ZEROS_MEASURED,
+               "the public rules for zeros");
+
 enum { CHANNELS = 3, BUDGET_USUAL = 60400, EFFORT_USUAL = 5, EFFORT_MOST = 9 };
 #define ERROR_LEAST 1e-6
 #define ERROR_MOST 10.0
@@ -32,6 +35,9 @@ static bp_status options_read(const bp_pack_options *options, struct fit_options
 	if (options->effort > EFFORT_MOST)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an effort of %u: 1 to %d are possible", options->effort,
 		                 EFFORT_MOST);
+	if (options->zeros > BP_ZEROS_MEASURED)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no rule %u for zeros; 0 is auto, 1 holes, 2 measured",
+		                 options->zeros);
 	*fit = (struct fit_options){
 		.profile = options->profile ? (enum profile)options->profile : PROFILE_SPECTRAL,
 		.budget_bytes = options->max_error > 0  ? RECORD_BUDGET_MAX
@@ -39,6 +45,7 @@ static bp_status options_read(const bp_pack_options *options, struct fit_options
 	                                            : BUDGET_USUAL,
 		.max_error = options->max_error,
 		.effort = options->effort ? (int)options->effort : EFFORT_USUAL,
+		.zeros = (enum zeros_rule)options->zeros,
 	};
 	return BP_OK;
 }
@@ -101,6 +108,7 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 	struct fit_options fit;
 	struct lattice lattice = {0};
 	struct record_source source = {0};
+	struct holes holes;
 	fenv_t before;
 
 	if (!name || !record || !record_bytes)
@@ -116,9 +124,12 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 	status = watch_tell(fit.watch, 0, error);
 	if (!status)
 		status = lattice_make(measured, &lattice, error);
+	if (!status)
+		status = lattice_take_holes(&lattice, fit.zeros, &holes, error);
 	if (!status) {
 		source.bytes = measured->source_bytes;
 		source.nonfinite_count = lattice.nonfinite_count;
+		source.hole_count = (uint32_t)holes.count;
 		memcpy(source.sha256, measured->source_sha256, sizeof source.sha256);
 		status = record_encode(&lattice, name, &source, &fit, record, record_bytes, NULL, error);
 	}

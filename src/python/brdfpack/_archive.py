@@ -14,6 +14,7 @@ from ._native import ffi, lib
 FORMS = {"expanded": lib.BP_FORM_EXPANDED, "compact": lib.BP_FORM_COMPACT, "preview": lib.BP_FORM_PREVIEW}
 COLOURS = {"rgb": lib.BP_COLOUR_RGB, "mean": lib.BP_COLOUR_MEAN}
 PROFILES = {1: "paper", 2: "spectral"}
+ZEROS = ("auto", "holes", "measured")
 
 
 class Layer(NamedTuple):
@@ -56,7 +57,10 @@ class Problem(NamedTuple):
 
 
 class Info(NamedTuple):
-    """What a record's head says. shape: cells (H, D, P); source_sha256: of the measured file, 32 bytes."""
+    """What a record's head says. shape: cells (H, D, P); source_sha256: of the measured file, 32 bytes.
+
+    source_holes: its cells that were taken as not measured for the value they hold, by the rule zeros (see pack).
+    """
 
     name: str
     profile: str
@@ -76,6 +80,8 @@ class Info(NamedTuple):
     source_sha256: bytes
     source_nonfinite: int
     horizon_limit: float
+    source_holes: int
+    zeros: str
 
 
 def elements(call, handle, index: int, kind: str, most: int, error) -> list:
@@ -113,7 +119,8 @@ class Entry(NoPickle):
             sections=tuple(Section(s.type, s.codec, s.version, s.layer, s.flags, s.bytes, s.error) for s in sections),
             left_out=info.left_out, effort=info.effort, budget_bytes=info.budget_bytes, max_error=info.max_error,
             source_bytes=info.source_bytes, source_sha256=bytes(ffi.buffer(info.source_sha256)),
-            source_nonfinite=info.source_nonfinite, horizon_limit=info.horizon_limit)
+            source_nonfinite=info.source_nonfinite, horizon_limit=info.horizon_limit,
+            source_holes=info.source_holes, zeros=ZEROS[info.zeros])
 
     def record(self) -> bytes:
         """Its record, byte for byte: what Writer.add takes."""

@@ -54,7 +54,7 @@ static bool angles_parse(const struct command *command, const char *text, struct
 }
 
 /* The measured file that belongs to an archived material: the path itself, or NAME.binary in that folder. */
-static bp_status reference_read(const char *path, const char *name, struct lattice *out, bp_error *error)
+static bp_status reference_read(const char *path, const char *name, enum zeros_rule zeros, struct lattice *out, bp_error *error)
 {
 	struct stat status;
 	char *file = NULL;
@@ -62,6 +62,9 @@ static bp_status reference_read(const char *path, const char *name, struct latti
 	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && asprintf(&file, "%s/%s.binary", path, name) < 0)
 		return error_memory(error, 512);
 	bp_status result = lattice_read_path(file ? file : path, &(struct merl_reading){.any_dims = true}, out, &reason);
+	struct holes holes;
+	if (result == BP_OK && (result = lattice_take_holes(out, zeros, &holes, &reason)) != BP_OK)
+		lattice_free(out);
 	if (result != BP_OK)
 		error_set(error, result, reason.offset, "%s: %s", file ? file : path, reason.message);
 	free(file);
@@ -72,7 +75,10 @@ static bp_status reference_read(const char *path, const char *name, struct latti
 static bp_status material_fit(struct show *show, const struct show_options *options, bp_error *error)
 {
 	struct material *material = &show->material;
-	bp_status status = model_fit(&material->lattice, &options->fit, &material->model, error);
+	struct holes holes;
+	bp_status status = lattice_take_holes(&material->lattice, options->fit.zeros, &holes, error);
+	if (status == BP_OK)
+		status = model_fit(&material->lattice, &options->fit, &material->model, error);
 	if (status == BP_OK)
 		status = expansion_alloc(material->lattice.dims, &material->table, error);
 	if (status == BP_OK)
@@ -141,7 +147,7 @@ static int show_draw(struct show *show, const struct show_options *options)
 			return EXIT_FAILED;
 		}
 	} else if (options->reference) {
-		if (reference_read(options->reference, material->name, &show->reference, &error)) {
+		if (reference_read(options->reference, material->name, material->head.options.zeros, &show->reference, &error)) {
 			report_error(NULL, NULL, &error); /* names the file */
 			return EXIT_FAILED;
 		}
