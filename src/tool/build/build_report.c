@@ -7,7 +7,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-enum { WARNINGS_MAX = 3, WARNING_BYTES = 320 };
+enum { WARNINGS_MAX = 3, WARNING_BYTES = 400 };
 static const char *const ORIGIN_NAMES[] = {[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_KEPT] = "kept"};
 
 /* The warning that values were taken for marks. */
