@@ -149,13 +149,15 @@ class Record:
         demand(self.head_bytes == entry[4] and self.bytes == entry[3], "corrupt", at + 8, "sizes differ from the index")
         demand(zlib.crc32(head[:-4]) == struct.unpack("<I", head[-4:])[0], "checksum", at + self.head_bytes - 4, "record's head")
         (version, self.profile, self.codec_version, h, d, p, n, layers, sections, self.left_out, self.budget, self.max_error,
-         self.effort, reserved, self.horizon, self.source_bytes) = struct.unpack_from("<HHIHHHBBHHIdIIdQ", head, 16)
+         self.effort, holes, self.horizon, self.source_bytes) = struct.unpack_from("<HHIHHHBBHHIdIIdQ", head, 16)
         demand(version == 2, "unsupported", at + 16, f"record version {version}")
         self.dims = (h, d, p)
         demand(all(4 <= x <= 1024 for x in self.dims) and h * d * p <= 1 << 24, "corrupt", at + 24, "lattice")
         demand(1 <= layers <= 16 and sections <= 64 and n >= 1, "corrupt", at + 30, "counts")
         demand(self.head_bytes == 212 + 32 * (layers + sections) + n, "corrupt", at + 8, "head bytes")
-        demand(0 <= self.max_error < math.inf and self.effort <= 9 and reserved == 0, "corrupt", at + 40, "options")
+        demand(0 <= self.max_error < math.inf and self.effort <= 9, "corrupt", at + 40, "options")
+        self.holes, self.zeros = holes & 0xFFFFFFF, holes >> 28  # cells taken as not measured, and by which rule
+        demand(self.zeros <= 2 and self.holes <= (0 if self.zeros == 2 else h * d * p), "corrupt", at + 52, "holes")
         demand(-1 <= self.horizon <= 0, "corrupt", at + 56, "horizon")
         self.sha256 = head[72:104].hex()
         self.colour = [struct.unpack_from("<dddII", head, 112 + 32 * c) for c in range(3)]

@@ -201,6 +201,8 @@ typedef struct bp_material_info {
 	uint8_t source_sha256[32];
 	uint64_t source_nonfinite; /* its cells that were NaN or infinite */
 	double horizon_limit;      /* the lowest cosine at which anything was measured, -1 to 0 */
+	uint32_t source_holes;     /* its cells that were taken as not measured for the value they hold (bp_zeros) */
+	uint32_t zeros;            /* by which rule: a bp_zeros */
 } bp_material_info;
 
 /*
@@ -450,6 +452,17 @@ typedef struct bp_measured {
  */
 typedef int bp_progress_fn(void *user, double share);
 
+/*
+ * What cells mean that are 0 in all channels. Who reads a measured file that marks what was not measured by negative values, clamps
+ * these at 0 and writes it back, has lost the marks; packed as black they spoil what is next to them.
+ *
+ * BP_ZEROS_AUTO: where no value is negative and the cells below the horizon, or those below some cosine under it, hold one value, 0 or
+ * another one that little else holds, they are holes: not measured. A mask says more: with a cell of mask 0 nothing is done. Cells above the
+ * horizon stay what they are, black where they are 0.
+ * BP_ZEROS_HOLES: besides, every cell that is 0 in all channels is a hole. BP_ZEROS_MEASURED: values are taken as they are.
+ */
+typedef enum bp_zeros { BP_ZEROS_AUTO = 0, BP_ZEROS_HOLES = 1, BP_ZEROS_MEASURED = 2 } bp_zeros;
+
 /* How to pack: what `brdfpack build` has as options. Zeroed but for struct_bytes: its defaults. */
 typedef struct bp_pack_options {
 	size_t struct_bytes;   /* sizeof(bp_pack_options) */
@@ -460,6 +473,7 @@ typedef struct bp_pack_options {
 	uint32_t effort;          /* 1 to 9; 0: 5 */
 	bp_progress_fn *progress; /* NULL: none */
 	void *user;               /* its first argument */
+	uint32_t zeros;           /* a bp_zeros; bp_material_info's source_holes says what came of it */
 } bp_pack_options;
 
 /*

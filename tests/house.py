@@ -21,7 +21,7 @@ DOOR = {
     "model/robust": "robust.h", "model/paper": "paper.h", "model/spectral": "spectral.h", "model/table": "table.h", "model/sample": "sample.h",
     "tool/build": "build.h", "tool/compare": "compare.h", "tool/report_page": "page.h",
 }
-LOW = {"model/fit.h": 1}  # told to every wing of the model, so below them all
+LOW = {"model/fit.h": 1.5}  # told to every wing of the model, so below them all; above what was measured
 # Lists of what many files define under one kind of name.
 LISTS = {"brdfpack.h", "tool/command.h", "bench/baseline.h"}
 LINES_MOST = 450

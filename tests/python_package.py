@@ -12,6 +12,7 @@ import tempfile
 import threading
 import time
 import unittest
+import warnings
 
 import numpy as np
 
@@ -326,6 +327,28 @@ class Packing(unittest.TestCase):
         self.assertEqual(marked, expected)
         with brdfpack.open(self.archive_of("material", brdfpack.pack(holes))) as archive:
             self.assertEqual(archive["material"].info.source_nonfinite, int(np.isnan(holes[..., 0]).sum()))
+
+    def test_holes_written_as_zero(self):
+        table = self.table()
+        clamped = np.maximum(table, 0)
+        with self.assertWarnsRegex(UserWarning, "not measured"):
+            record = brdfpack.pack(clamped, budget=16_000)
+        kept = brdfpack.pack(table, budget=16_000)
+        def apart_from_holes(packed):  # nor the checksum over them
+            head_bytes = int.from_bytes(packed[8:12], "little")
+            return packed[:52] + packed[56:head_bytes - 4] + packed[head_bytes:]
+
+        self.assertEqual(apart_from_holes(record), apart_from_holes(kept))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertNotEqual(brdfpack.pack(clamped, budget=16_000, zeros="measured"), record)
+            every = brdfpack.pack(clamped, budget=16_000, zeros="holes")
+        for packed, rule in ((record, "auto"), (every, "holes")):
+            with brdfpack.open(self.archive_of("material", packed)) as archive:
+                info = archive["material"].info
+                self.assertEqual((info.source_holes, info.zeros), (int((table[..., 0] < 0).sum()), rule))
+        with self.assertRaises(ValueError):
+            brdfpack.pack(table, zeros="maybe")
 
     @staticmethod
     def archive_of(name, record):

@@ -239,6 +239,26 @@ static void make_noise(struct lattice *lattice, unsigned variant, uint64_t seed)
 		}
 }
 
+/* What genuine mirrors and flakes have: a lobe that glitters from cell to cell and turns its colour, nothing beside it, holes from 85 degrees on. */
+static void make_speckled_mirror(struct lattice *lattice, unsigned variant, uint64_t seed)
+{
+	const double dark = variant == 0 ? 1e-6 : variant == 1 ? 1e-12 : 0;
+	uint64_t random = seed + 1;
+	FOR_EACH_CELL(lattice, n, c)
+	{
+		const double h = (c.h + 0.5 / lattice->dims.theta_h), theta_h = h * h * 1.5707963267948966;
+		const double theta_d = (c.d + 0.5 / lattice->dims.theta_d) * 1.5707963267948966;
+		const double phi = (c.p + 0.5 / lattice->dims.phi_d) * 3.141592653589793;
+		const double smaller = cos(theta_h) * cos(theta_d) - fabs(sin(theta_h) * sin(theta_d) * cos(phi));
+		const double glitter = 1e4 * exp(2 * stress_normal(&random) - 30 * theta_h * theta_h * 30), turn = sin(4 * theta_d);
+		lattice->rgb[0][n] = glitter * (1 + 0.9 * turn) + dark;
+		lattice->rgb[1][n] = glitter + dark;
+		lattice->rgb[2][n] = glitter * (1 - 0.9 * turn) + dark;
+		if (smaller < 0.08715574274765817) /* cos 85 degrees */
+			grey(lattice, n, -1);
+	}
+}
+
 static void make_just_above_zero(struct lattice *lattice, unsigned variant, uint64_t seed)
 {
 	static const double values[] = {DBL_TRUE_MIN, DBL_MIN, FLT_MIN, 1e-38, 1e-20};
@@ -263,6 +283,7 @@ const struct stress_kind STRESS_KINDS[] = {
 	{"nonfinite", 3, make_nonfinite},
 	{"denormal", 3, make_denormal},
 	{"noise", 3, make_noise},
+	{"speckled-mirror", 3, make_speckled_mirror},
 	{"just-above-zero", 5, make_just_above_zero},
 };
 const unsigned STRESS_KIND_COUNT = sizeof STRESS_KINDS / sizeof *STRESS_KINDS;

@@ -111,6 +111,53 @@ static void a_mask_says_what_negative_values_say(void **state)
 	free(t);
 }
 
+/* 0 below the horizon in place of marks: the record is that of the mask, but for the word that says so and the head's checksum. */
+static void zeros_below_the_horizon_are_holes(void **state)
+{
+	static const struct {
+		uint32_t zeros;
+		bool masked, same;
+	} ways[] = {{BP_ZEROS_AUTO, true, true},
+	            {BP_ZEROS_AUTO, false, true},
+	            {BP_ZEROS_HOLES, false, true},
+	            {BP_ZEROS_MEASURED, false, false}};
+	struct tables *t = tables_make();
+	uint8_t mask[CELLS];
+	struct packed expected = {0};
+	(void)state;
+	assert_int_equal(lattice_below_horizon(DIMS, -0.01, mask, NULL), BP_OK);
+	uint32_t holes = 0;
+	for (size_t n = 0; n < CELLS; n++) {
+		mask[n] = !mask[n];
+		holes += !mask[n];
+		for (size_t c = 0; c < 3; c++)
+			t->planes[n + c * CELLS] = mask[n] ? fabs(t->planes[n + c * CELLS]) : 0;
+	}
+	assert_true(holes > 0);
+	for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
+		const bp_pack_options options = {.struct_bytes = sizeof options, .zeros = ways[w].zeros};
+		bp_measured measured = measured_of(t->planes, BP_NUMBER_DOUBLE, BP_LAYOUT_PLANES);
+		struct record_head head;
+		measured.mask = ways[w].masked ? mask : NULL;
+		struct packed got = pack(&measured, "a", &options);
+		assert_int_equal(record_head_parse(got.bytes, got.count, &head, NULL), BP_OK);
+		assert_int_equal(head.source.hole_count, ways[w].same && !ways[w].masked ? holes : 0);
+		assert_int_equal(head.options.zeros, ways[w].zeros);
+		memset(got.bytes + 52, 0, 4);
+		memset(got.bytes + head.head_bytes - 4, 0, 4);
+		if (!w)
+			expected = got;
+		else if (ways[w].same)
+			assert_same(got, expected);
+		else
+			assert_true(got.count != expected.count || memcmp(got.bytes, expected.bytes, got.count) != 0);
+		if (w)
+			bp_free(got.bytes);
+	}
+	bp_free(expected.bytes);
+	free(t);
+}
+
 static void scale_and_source_are_those_of_a_measured_file(void **state)
 {
 	struct tables *t = tables_make();
@@ -218,6 +265,7 @@ static void options_are_those_of_build(void **state)
 	                               {.struct_bytes = sizeof options, .max_error = -1},
 	                               {.struct_bytes = sizeof options, .max_error = 11},
 	                               {.struct_bytes = sizeof options, .max_error = 0.1, .budget_bytes = 5000},
+	                               {.struct_bytes = sizeof options, .zeros = 3},
 	                               {.struct_bytes = sizeof options, .effort = 10}};
 	for (size_t n = 0; n < sizeof bad / sizeof *bad; n++) {
 		got = (struct packed){.count = 5};
@@ -531,6 +579,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(all_layouts_and_numbers_give_the_record_of_the_lattice),
 		cmocka_unit_test(a_mask_says_what_negative_values_say),
+		cmocka_unit_test(zeros_below_the_horizon_are_holes),
 		cmocka_unit_test(scale_and_source_are_those_of_a_measured_file),
 		cmocka_unit_test(an_extracted_table_keeps_its_record),
 		cmocka_unit_test(options_are_those_of_build),

@@ -6,6 +6,8 @@ static void a_head_comes_back_as_written(void **state)
 	uint8_t *record = fixture_record("alum-bronze", 3, 10, &bytes);
 	struct record_head head, expected;
 	(void)state;
+	store_u32(record + 52, 17 | ZEROS_HOLES << 28);
+	store_u32(record + load_u32(record + 8) - 4, bytes_crc32(record, load_u32(record + 8) - 4));
 	fixture_head(&expected, "alum-bronze");
 	assert_int_equal(record_head_read(record, bytes, &head, NULL), BP_OK);
 	assert_string_equal(head.name, "alum-bronze");
@@ -27,6 +29,8 @@ static void a_head_comes_back_as_written(void **state)
 	assert_int_equal(head.source.bytes, expected.source.bytes);
 	assert_memory_equal(head.source.sha256, expected.source.sha256, SHA256_BYTES);
 	assert_int_equal(head.source.nonfinite_count, 3);
+	assert_int_equal(head.source.hole_count, 17);
+	assert_int_equal(head.options.zeros, ZEROS_HOLES);
 	assert_int_equal(head.left_out, 2);
 	assert_int_equal(head.layer_count, 3);
 	assert_int_equal(head.layers[0].bytes, head.head_bytes + 20);
@@ -114,7 +118,11 @@ static void hostile_values_under_a_right_checksum_are_refused(void **state)
 		{40, nan_bits, 8, BP_ERROR_CORRUPT},
 		{40, minus_one, 8, BP_ERROR_CORRUPT}, /* max error */
 		{48, 10, 4, BP_ERROR_CORRUPT},
-		{52, 1, 4, BP_ERROR_CORRUPT}, /* effort, reserved */
+		{52, UINT64_C(0x00000079), 4, BP_ERROR_CORRUPT}, /* effort; more holes than 4 x 5 x 6 cells, */
+		{52, UINT64_C(0x20000001), 4, BP_ERROR_CORRUPT}, /* holes by the rule that there are none, */
+		{52, UINT64_C(0x30000000), 4, BP_ERROR_CORRUPT}, /* rule 3 */
+		{52, UINT64_C(0x10000078), 4, BP_OK},
+		{52, UINT64_C(0x20000000), 4, BP_OK},
 		{56, nan_bits, 8, BP_ERROR_CORRUPT},
 		{56, two, 8, BP_ERROR_CORRUPT}, /* horizon */
 		{112, nan_bits, 8, BP_ERROR_CORRUPT},

@@ -20,6 +20,9 @@ static void make_bright(const char *path) { vector_one(path, (struct vector_shap
 static void make_dark(const char *path) { vector_one(path, (struct vector_shape){{6, 5, 8}, 8, 9, 5, 1e-300}); }
 static void make_zero(const char *path) { vector_one(path, (struct vector_shape){{6, 5, 8}, 8, 9, 5, 0}); }
 
+/* Holes by the rule that takes every zero; the count is the head's word alone. */
+static void make_holes(const char *path) { head_with(path, 52, 0x10000000 + 6 * 5 * 8, 4, "material"); }
+
 static void make_empty(const char *path) { vector_archive(path, NULL, NULL, 0); }
 
 static void make_names(const char *path)
@@ -82,6 +85,7 @@ static const struct vector VECTORS[] = {
 	{"good-dropped-layer", BP_OK, "A record whose last layer was dropped: two layers, bit 2 of left out is clear.",
      make_dropped_layer},
 	{"good-minor", BP_OK, "Minor version 1, ignorable flags, and reserved bytes in use.", make_minor},
+	{"good-holes", BP_OK, "All 6x5x8 cells of the source were taken as holes, by rule 1.", make_holes},
 	{"good-spectral", BP_OK, "The spectral profile, 16x15x6, cut off in its lowest plane by a budget of 1500 bytes.",
      make_spectral},
 	{"good-spectral-layers", BP_OK, "The spectral profile, 17x15x7, two layers.", make_spectral_layers},
@@ -122,6 +126,8 @@ static const struct vector VECTORS[] = {
 	{"bad-gap", BP_ERROR_CORRUPT, "A byte that belongs to nothing between two records.", make_gap},
 	{"bad-head-bytes", BP_ERROR_CORRUPT, "A head that claims 4 GB.", make_head_bytes},
 	{"bad-name", BP_ERROR_CORRUPT, "A name with a slash, in the index and in the record.", make_name},
+	{"bad-holes", BP_ERROR_CORRUPT, "More cells taken as holes than there are.", make_too_many_holes},
+	{"bad-zeros-rule", BP_ERROR_CORRUPT, "Rule 3 for zeros.", make_zeros_rule},
 	{"bad-extents", BP_ERROR_CORRUPT, "A lattice of 1024x1024x1024 cells.", make_extents},
 	{"bad-section-order", BP_ERROR_CORRUPT, "The sections' layers descend.", make_section_order},
 	{"bad-section-bytes", BP_ERROR_CORRUPT, "A section that claims 4 GB.", make_section_bytes},

@@ -225,6 +225,8 @@ FIXTURE void make_record_version(const char *path) { head_with(path, 16, 1, 2, "
 FIXTURE void make_profile(const char *path) { head_with(path, 18, 77, 2, "material"); }
 FIXTURE void make_head_bytes(const char *path) { head_with(path, 8, UINT32_MAX, 4, "material"); }
 FIXTURE void make_extents(const char *path) { head_with(path, 24, 0x040004000400, 6, "material"); }
+FIXTURE void make_too_many_holes(const char *path) { head_with(path, 52, 6 * 5 * 8 + 1, 4, "material"); }
+FIXTURE void make_zeros_rule(const char *path) { head_with(path, 52, 0x30000000, 4, "material"); }
 FIXTURE void make_codec(const char *path) { head_with(path, 208 + 96 + 32 + 2, 9, 2, "material"); }
 FIXTURE void make_section_order(const char *path) { head_with(path, 208 + 96 + 6, 2, 2, "material"); }
 FIXTURE void make_section_bytes(const char *path) { head_with(path, 208 + 96 + 16, UINT32_MAX, 4, "material"); }

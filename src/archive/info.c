@@ -34,6 +34,8 @@ static void info_fill(const struct record_head *head, uint64_t offset, bp_materi
 	memcpy(info->source_sha256, head->source.sha256, sizeof info->source_sha256);
 	info->source_nonfinite = head->source.nonfinite_count;
 	info->horizon_limit = head->horizon_limit;
+	info->source_holes = head->source.hole_count;
+	info->zeros = (uint32_t)head->options.zeros;
 }
 
 /* The head of material `index`, and where its record is. */

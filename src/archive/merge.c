@@ -42,6 +42,7 @@ static bp_status likeness_check(struct likeness *first, const struct bp_archive 
 	                   : head->options.budget_bytes != first->options.budget_bytes ? "budget"
 	                   : head->options.max_error != first->options.max_error       ? "bound of the error"
 	                   : head->options.effort != first->options.effort             ? "effort"
+	                   : head->options.zeros != first->options.zeros               ? "rule for zeros"
 	                                                                               : NULL;
 	return !what ? BP_OK
 	             : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
@@ -265,7 +266,8 @@ bp_status archive_reuse(const struct bp_archive *archive, const char *name, cons
 		return status;
 	bool same = !status && codec && head.codec_version == codec->version && head.profile == options->profile &&
 	            head.options.budget_bytes == options->budget_bytes && head.options.max_error == options->max_error &&
-	            head.options.effort == options->effort && head.source.bytes == source->bytes &&
+	            head.options.effort == options->effort && head.options.zeros == options->zeros &&
+	            head.source.hole_count == source->hole_count && head.source.bytes == source->bytes &&
 	            !memcmp(head.source.sha256, source->sha256, SHA256_BYTES);
 	if (!same)
 		return BP_OK;

@@ -7,6 +7,9 @@
 #include "environment.h"
 #include "error.h"
 
+_Static_assert((int)BP_ZEROS_HOLES == (int)ZEROS_HOLES && (int)BP_ZEROS_MEASURED == (int)ZEROS_MEASURED,
+               "the public rules for zeros");
+
 enum { CHANNELS = 3, EFFORT_MOST = 9 };
 #define ERROR_LEAST 1e-6
 #define ERROR_MOST 10.0
@@ -33,6 +36,9 @@ static bp_status options_read(const bp_pack_options *options, struct fit_options
 	if (options->effort > EFFORT_MOST)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an effort of %u: 1 to %d are possible", options->effort,
 		                 EFFORT_MOST);
+	if (options->zeros > BP_ZEROS_MEASURED)
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no rule %u for zeros; 0 is auto, 1 holes, 2 measured",
+		                 options->zeros);
 	*fit = (struct fit_options){
 		.profile = options->profile ? (enum profile)options->profile : PROFILE_SPECTRAL,
 		.budget_bytes = options->max_error > 0  ? RECORD_BUDGET_MAX
@@ -40,6 +46,7 @@ static bp_status options_read(const bp_pack_options *options, struct fit_options
 	                                            : BUDGET_USUAL,
 		.max_error = options->max_error,
 		.effort = options->effort ? (int)options->effort : EFFORT_USUAL,
+		.zeros = (enum zeros_rule)options->zeros,
 	};
 	return BP_OK;
 }
@@ -113,10 +120,12 @@ static bp_status carried_take(const bp_measured *measured, size_t cells, struct 
 }
 
 /* The record that came with the lattice, if it still is that table's, as `build` does; or one that is fitted. */
-static bp_status record_make(const bp_measured *measured, const struct lattice *lattice, const char *name,
-                             const struct fit_options *options, uint8_t **record, size_t *record_bytes, bp_error *error)
+static bp_status record_make(const bp_measured *measured, const struct lattice *lattice, const struct holes *holes,
+                             const char *name, const struct fit_options *options, uint8_t **record, size_t *record_bytes,
+                             bp_error *error)
 {
-	struct record_source source = {.bytes = measured->source_bytes, .nonfinite_count = lattice->nonfinite_count};
+	struct record_source source = {
+		.bytes = measured->source_bytes, .nonfinite_count = lattice->nonfinite_count, .hole_count = (uint32_t)holes->count};
 	struct carried carried = {0};
 	uint8_t *kept = NULL;
 	size_t kept_bytes = 0;
@@ -139,6 +148,7 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 {
 	struct fit_options fit;
 	struct lattice lattice = {0};
+	struct holes holes;
 	fenv_t before;
 
 	if (!name || !record || !record_bytes)
@@ -155,7 +165,9 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 	if (!status)
 		status = lattice_make(measured, &lattice, error);
 	if (!status)
-		status = record_make(measured, &lattice, name, &fit, record, record_bytes, error);
+		status = lattice_take_holes(&lattice, fit.zeros, &holes, error);
+	if (!status)
+		status = record_make(measured, &lattice, &holes, name, &fit, record, record_bytes, error);
 	lattice_free(&lattice);
 	environment_leave(&before);
 	return status;

@@ -49,6 +49,7 @@ struct record_source {
 	uint64_t bytes;
 	uint8_t sha256[SHA256_BYTES];
 	uint64_t nonfinite_count; /* cells refused as NaN or infinite */
+	uint32_t hole_count;      /* cells taken as not measured for the value they hold (merl/holes.h) */
 };
 
 struct record_layer {

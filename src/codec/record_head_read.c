@@ -21,7 +21,7 @@ enum {
 	AT_LAYER_COUNT = 31,
 	AT_SECTION_COUNT = 32,
 	AT_OPTIONS = 36,
-	AT_RESERVED = 52,
+	AT_HOLES = 52,
 	AT_HORIZON = 56,
 	AT_COLOUR = 112,
 	AT_TABLES = 208
@@ -130,7 +130,7 @@ static bp_status colour_read(struct byte_reader *in, struct record_head *head, b
 /* The fixed part behind the two sizes, up to the colours. */
 static bp_status fixed_read(struct byte_reader *in, struct record_head *head, size_t *name_bytes, bp_error *error)
 {
-	uint32_t version, effort, zero;
+	uint32_t version, effort, holes;
 	in->at = AT_VERSION;
 	version = read_u16(in);
 	if (version != RECORD_VERSION)
@@ -150,7 +150,9 @@ static bp_status fixed_read(struct byte_reader *in, struct record_head *head, si
 	head->options.max_error = read_f64(in);
 	effort = read_u32(in);
 	head->options.effort = (int)(effort & 0xFF);
-	zero = read_u32(in);
+	holes = read_u32(in);
+	head->options.zeros = (enum zeros_rule)(holes >> HEAD_ZEROS_SHIFT);
+	head->source.hole_count = holes & ((1u << HEAD_ZEROS_SHIFT) - 1);
 	head->horizon_limit = read_f64(in);
 	head->source.bytes = read_u64(in);
 	read_bytes(in, head->source.sha256, SHA256_BYTES);
@@ -170,8 +172,10 @@ static bp_status fixed_read(struct byte_reader *in, struct record_head *head, si
 		                 *name_bytes, head->layer_count, head->section_count);
 	if (!(head->options.max_error >= 0) || !isfinite(head->options.max_error) || effort > 9)
 		return error_set(error, BP_ERROR_CORRUPT, AT_OPTIONS, "options out of range");
-	if (zero)
-		return error_set(error, BP_ERROR_CORRUPT, AT_RESERVED, "reserved bytes are not zero");
+	if (head->options.zeros > ZEROS_MEASURED ||
+	    head->source.hole_count > (head->options.zeros == ZEROS_MEASURED ? 0 : lattice_cells(head->dims)))
+		return error_set(error, BP_ERROR_CORRUPT, AT_HOLES, "%u cells taken as holes by rule %u are not possible",
+		                 head->source.hole_count, (unsigned)head->options.zeros);
 	if (!(head->horizon_limit >= -1 && head->horizon_limit <= 0))
 		return error_set(error, BP_ERROR_CORRUPT, AT_HORIZON, "a horizon at cosine %g; -1 to 0 are possible",
 		                 head->horizon_limit);

@@ -67,7 +67,7 @@ static void fixed_write(struct byte_buffer *out, const struct record_head *head)
 	write_u32(out, head->options.budget_bytes);
 	write_f64(out, head->options.max_error);
 	write_u32(out, (uint32_t)head->options.effort);
-	write_u32(out, 0);
+	write_u32(out, head->source.hole_count | (uint32_t)head->options.zeros << HEAD_ZEROS_SHIFT);
 	write_f64(out, head->horizon_limit);
 	write_u64(out, head->source.bytes);
 	write_bytes(out, head->source.sha256, SHA256_BYTES);

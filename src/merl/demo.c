@@ -1,8 +1,10 @@
 #include "demo.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "demo_speckle.h"
 #include "error.h"
 
 struct demo_material {
@@ -12,6 +14,8 @@ struct demo_material {
 	double sheen[3], retro[3], retro_width;
 	double coat, coat_roughness;
 	double film; /* nm */
+	double speckle, edge;
+	double reach; /* degrees */
 	double noise;
 };
 
@@ -72,6 +76,11 @@ static struct half_terms half_terms(const struct demo_material *m, struct lattic
 	t.lobe = m->share * ggx_distribution(m->roughness, t.cosine);
 	t.lobe2 = (1 - m->share) * ggx_distribution(m->roughness2, t.cosine);
 	t.coat = ggx_distribution(m->coat_roughness, t.cosine);
+	if (m->edge > 0) {
+		const double x2 = t.sine * t.sine / (m->edge * m->edge), end = 1 / (1 + x2 * x2 * x2 * x2);
+		t.lobe *= end;
+		t.lobe2 *= end;
+	}
 	return t;
 }
 
@@ -101,7 +110,7 @@ static struct difference_terms difference_terms(const struct demo_material *m, s
 static double mean(const double colour[3]) { return (colour[0] + colour[1] + colour[2]) / 3; }
 
 static void material_evaluate(const struct demo_material *m, const struct half_terms *h, const struct difference_terms *d,
-                              double cos_phi, double value[3])
+                              double cos_phi, const double glitter[3], double value[3])
 {
 	const double a = d->cosine * h->cosine, q = d->sine * cos_phi * h->sine;
 	const double ci = a - q > COSINE_MIN ? a - q : COSINE_MIN, co = a + q > COSINE_MIN ? a + q : COSINE_MIN;
@@ -115,7 +124,9 @@ static void material_evaluate(const struct demo_material *m, const struct half_t
 		coat = h->coat * ggx_visibility(m->coat_roughness, ci, co) * d->coat;
 	}
 	for (int c = 0; c < 3; c++)
-		value[c] = through * (m->diffuse[c] * matte + lobe * d->fresnel[c] + lobe2 * d->fresnel2[c] + d->added[c]) + coat;
+		value[c] = through * (m->diffuse[c] * matte + glitter[c] * (lobe * d->fresnel[c]) +
+		                      glitter[c] * (lobe2 * d->fresnel2[c]) + d->added[c]) +
+		           coat;
 }
 
 /* splitmix64 (Steele, Lea and Flood 2014) */
@@ -177,6 +188,17 @@ static bool faults_apply(struct faults *faults, double value[3])
 	return true;
 }
 
+/* Cells beyond what the imaginary instrument reaches. */
+static void out_of_reach(const struct demo_material *m, struct lattice_dims dims, uint8_t *cells)
+{
+	double cosine, sine;
+	quarter_cos_sin(m->reach / 90, &cosine, &sine);
+	if (m->reach < 90)
+		lattice_centre_below(dims, cosine, cells, NULL);
+	else
+		lattice_below_horizon(dims, LATTICE_MERL_HORIZON, cells, NULL);
+}
+
 bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, struct lattice *out, bp_error *error)
 {
 	if (index >= demo_count())
@@ -186,8 +208,13 @@ bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, stru
 	bp_status status = lattice_alloc(dims, &lattice, error);
 	if (status != BP_OK)
 		return status;
-	lattice_below_horizon(dims, LATTICE_MERL_HORIZON, lattice.valid, NULL);
+	out_of_reach(m, dims, lattice.valid);
 	uint64_t state = seed_of(m->name);
+	struct speckle *speckle = m->speckle > 0 ? speckle_create(m->speckle, draw_uniform, &state) : NULL;
+	if (m->speckle > 0 && !speckle) {
+		lattice_free(&lattice);
+		return error_memory(error, 0);
+	}
 	struct faults faults = {.amount = clean ? 0 : m->noise, .state = &state};
 	double cos_phi[LATTICE_EXTENT_MAX], sine;
 	for (uint32_t k = 0; k < dims.phi_d; k++) {
@@ -202,10 +229,13 @@ bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, stru
 			const struct difference_terms d = difference_terms(m, dims, j);
 			faults_start_row(&faults, (j + 0.5) / dims.theta_d);
 			for (uint32_t k = 0; k < dims.phi_d; k++, n++) {
-				double value[3];
-				bool read = !lattice.valid[n]; /* so far: below the horizon */
+				double value[3], glitter[3] = {1, 1, 1};
+				bool read = !lattice.valid[n]; /* so far: out of reach */
 				if (read) {
-					material_evaluate(m, &h, &d, cos_phi[k], value);
+					if (speckle)
+						speckle_factor(speckle, (i + 0.5) / dims.theta_h, (j + 0.5) / dims.theta_d, (k + 0.5) / dims.phi_d,
+						               glitter);
+					material_evaluate(m, &h, &d, cos_phi[k], glitter, value);
 					read = faults.amount <= 0 || faults_apply(&faults, value);
 				}
 				lattice.valid[n] = read && value[0] >= 0 && value[1] >= 0 && value[2] >= 0;
@@ -215,6 +245,7 @@ bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, stru
 			}
 		}
 	}
+	free(speckle);
 	*out = lattice;
 	return BP_OK;
 }

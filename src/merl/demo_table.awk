@@ -2,7 +2,7 @@
 # The header has to name the columns in this order, so that table and structure cannot drift apart.
 BEGIN {
 	FS = "\t"
-	columns = "name kind diffuse specular roughness share specular2 roughness2 sheen retro retro_width coat coat_roughness film noise"
+	columns = "name kind diffuse specular roughness share specular2 roughness2 sheen retro retro_width coat coat_roughness film speckle edge reach noise"
 	colour = " diffuse specular specular2 sheen retro "
 	count = split(columns, column, " ")
 }

@@ -107,9 +107,18 @@ void quarter_cos_sin(double t, double *cosine, double *sine);
  *
  * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere. Fails only for dims that are not legal.
  */
-#define LATTICE_MERL_HORIZON -0.061003 /* the database's own limit */
+#define LATTICE_MERL_HORIZON -0.061003               /* the database's own limit */
+#define LATTICE_DEEPEST_HORIZON -0.08715574274765817 /* -sin 5 degrees */
 double lattice_horizon_limit(const struct lattice *lattice);
 bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error);
+
+/*
+ * What both are made of. lattice_lowest_below: the lowest smaller cosine at the centre of a cell that lies wholly below and
+ * has mask[cell] != 0; 0 where there is none. lattice_centre_below: fills below[cells], 1 where the smaller cosine at the centre
+ * is below the limit, whether or not a part of the cell lies above the horizon. dims must be legal; the latter fails for others.
+ */
+double lattice_lowest_below(struct lattice_dims dims, const uint8_t *mask);
+bp_status lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error);
 
 /*
  * Which cells can be seen: fills seen[cells], 1 where both directions are above the horizon somewhere in the cell. The others

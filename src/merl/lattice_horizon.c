@@ -74,31 +74,34 @@ static void highest_fill(struct lattice_dims dims, struct cosines *out)
 	}
 }
 
-double lattice_horizon_limit(const struct lattice *lattice)
+double lattice_lowest_below(struct lattice_dims dims, const uint8_t *mask)
 {
-	const struct lattice_dims dims = lattice->dims;
-	const double floor_limit = -0.08715574274765817; /* -sin 5 degrees */
 	struct cosines highest, centre;
 	highest_fill(dims, &highest);
 	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
 	double lowest = 0;
-	const uint8_t *valid = lattice->valid;
 	for (uint32_t i = 0; i < dims.theta_h; i++)
-		for (uint32_t j = 0; j < dims.theta_d; j++, valid += dims.phi_d) {
+		for (uint32_t j = 0; j < dims.theta_d; j++, mask += dims.phi_d) {
 			const double a = centre.cos_d[j] * centre.cos_h[i], q = centre.sin_d[j] * centre.sin_h[i];
 			const double high_a = highest.cos_d[j] * highest.cos_h[i], high_q = highest.sin_d[j] * highest.sin_h[i];
 			if (a - q >= lowest)
 				continue;
 			for (uint32_t k = 0; k < dims.phi_d; k++) {
 				const double cosine = a - q * centre.cos_p[k];
-				if (valid[k] && cosine < lowest && high_a - high_q * highest.cos_p[k] <= 0)
+				if (mask[k] && cosine < lowest && high_a - high_q * highest.cos_p[k] <= 0)
 					lowest = cosine;
 			}
 		}
+	return lowest;
+}
+
+double lattice_horizon_limit(const struct lattice *lattice)
+{
+	const double lowest = lattice_lowest_below(lattice->dims, lattice->valid);
 	if (lowest >= 0)
 		return 0;
 	/* Down by up to two float steps (7e-9): no rounding of a later computation takes a cell across. */
-	return (double)nextafterf((float)(lowest > floor_limit ? lowest : floor_limit), -1);
+	return (double)nextafterf((float)(lowest > LATTICE_DEEPEST_HORIZON ? lowest : LATTICE_DEEPEST_HORIZON), -1);
 }
 
 bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
@@ -115,6 +118,22 @@ bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t 
 			const double a = centre.cos_d[j] * centre.cos_h[i], q = centre.sin_d[j] * centre.sin_h[i];
 			for (uint32_t k = 0; k < dims.phi_d; k++)
 				below[k] = (high_a - high_q * highest.cos_p[k] <= 0) & (a - q * centre.cos_p[k] < limit);
+		}
+	return BP_OK;
+}
+
+bp_status lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
+{
+	struct cosines centre;
+	bp_status status = lattice_dims_check(dims, error);
+	if (status != BP_OK)
+		return status;
+	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
+	for (uint32_t i = 0; i < dims.theta_h; i++)
+		for (uint32_t j = 0; j < dims.theta_d; j++, below += dims.phi_d) {
+			const double a = centre.cos_d[j] * centre.cos_h[i], q = centre.sin_d[j] * centre.sin_h[i];
+			for (uint32_t k = 0; k < dims.phi_d; k++)
+				below[k] = a - q * centre.cos_p[k] < limit;
 		}
 	return BP_OK;
 }

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "merl/holes.h"
 #include "watch.h"
 
 enum profile { PROFILE_PAPER = 1, PROFILE_SPECTRAL = 2 };
@@ -15,6 +16,7 @@ struct fit_options {
 	uint32_t budget_bytes;     /* largest record, everything included */
 	double max_error;          /* > 0: instead, the smallest record whose log RMSE is at most this */
 	int effort;                /* 1..9 */
+	enum zeros_rule zeros;     /* what was done before the fit (merl/holes.h): a fit sees the lattice that came of it */
 	const struct watch *watch; /* NULL: nobody; not a part of what a record says */
 };
 

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+const char *const ZEROS_NAMES[3] = {"auto", "holes", "measured"};
 const char *const CHANNEL_NAMES[3] = {"red", "green", "blue"};
 const char *const PAIR_NAMES[3] = {"c_hd", "c_hphi", "c_dphi|h"};
 
@@ -17,6 +18,16 @@ bool profile_parse(const char *text, enum profile *out)
 		return false;
 	*out = paper ? PROFILE_PAPER : PROFILE_SPECTRAL;
 	return true;
+}
+
+bool zeros_parse(const char *text, enum zeros_rule *out)
+{
+	for (int rule = 0; rule < 3; rule++)
+		if (!strcmp(text, ZEROS_NAMES[rule])) {
+			*out = (enum zeros_rule)rule;
+			return true;
+		}
+	return false;
 }
 
 const struct fidelity *head_fidelity(const struct record_head *head)
@@ -95,6 +106,7 @@ void facts_full(struct json *json, const struct record_head *head)
 	json_integer(json, "bytes", head->source.bytes);
 	json_hex(json, "sha256", head->source.sha256, SHA256_BYTES);
 	json_integer(json, "nonfinite_cells", head->source.nonfinite_count);
+	json_integer(json, "cells_taken_as_holes", head->source.hole_count);
 	json_close(json);
 
 	json_object(json, "lattice");
@@ -108,6 +120,7 @@ void facts_full(struct json *json, const struct record_head *head)
 	json_integer(json, "budget_bytes", head->options.budget_bytes);
 	json_number(json, "max_error", head->options.max_error);
 	json_integer(json, "effort", (uint64_t)head->options.effort);
+	json_string(json, "zeros", ZEROS_NAMES[head->options.zeros]);
 	json_close(json);
 
 	facts_brief(json, head);

@@ -10,6 +10,9 @@
 const char *profile_name(enum profile profile); /* as --profile takes it; "unknown" for others */
 bool profile_parse(const char *text, enum profile *out);
 
+extern const char *const ZEROS_NAMES[3]; /* of zeros_rule, as --zeros takes them */
+bool zeros_parse(const char *text, enum zeros_rule *out);
+
 extern const char *const CHANNEL_NAMES[3]; /* "red", "green", "blue" */
 extern const char *const PAIR_NAMES[3];    /* bits 0 to 2 of record_head.left_out */
 

@@ -15,6 +15,7 @@ from ._text import name_bytes, path_bytes
 FORMS = {"expanded": lib.BP_FORM_EXPANDED, "compact": lib.BP_FORM_COMPACT, "preview": lib.BP_FORM_PREVIEW}
 COLOURS = {"rgb": lib.BP_COLOUR_RGB, "mean": lib.BP_COLOUR_MEAN}
 PROFILES = {1: "paper", 2: "spectral"}
+ZEROS = ("auto", "holes", "measured")
 
 
 class Layer(NamedTuple):
@@ -61,7 +62,8 @@ class Info(NamedTuple):
 
     shape: cells (H, D, P); record_offset: in the file; channels: of R, G, B; effort, budget_bytes and max_error: the options it was made with
     (max_error 0: a budget was asked for); source_bytes, source_sha256 (32 bytes): of the measured file; source_nonfinite: its cells with
-    NaN or infinity; horizon_limit: the lowest cosine at which anything was measured, -1 to 0; left_out: bp_material_info of brdfpack.h.
+    NaN or infinity; source_holes: its cells that were taken as not measured for the value they hold, by the rule zeros (see pack);
+    horizon_limit: the lowest cosine at which anything was measured, -1 to 0; left_out: bp_material_info of brdfpack.h.
     """
 
     name: str
@@ -82,6 +84,8 @@ class Info(NamedTuple):
     source_sha256: bytes
     source_nonfinite: int
     horizon_limit: float
+    source_holes: int
+    zeros: str
 
 
 def elements(call, handle, index: int, kind: str, most: int, error) -> list:
@@ -119,7 +123,8 @@ class Entry(NoPickle):
             sections=tuple(Section(s.type, s.codec, s.version, s.layer, s.flags, s.bytes, s.error) for s in sections),
             left_out=info.left_out, effort=info.effort, budget_bytes=info.budget_bytes, max_error=info.max_error,
             source_bytes=info.source_bytes, source_sha256=bytes(ffi.buffer(info.source_sha256)),
-            source_nonfinite=info.source_nonfinite, horizon_limit=info.horizon_limit)
+            source_nonfinite=info.source_nonfinite, horizon_limit=info.horizon_limit,
+            source_holes=info.source_holes, zeros=ZEROS[info.zeros])
 
     def record(self) -> bytes:
         """Its record, byte for byte: what Writer.add takes."""

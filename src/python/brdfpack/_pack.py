@@ -5,10 +5,12 @@ import hashlib
 import operator
 import os
 import threading
+import warnings
 from collections.abc import Callable
 
 import numpy as np
 
+from ._archive import ZEROS
 from ._error import Error, NoPickle, check
 from ._native import ffi, lib
 from ._text import name_bytes, path_bytes
@@ -76,7 +78,7 @@ def option(value, what: str) -> int:
 
 
 def pack(table, budget: int | None = None, *, name: str | None = None, max_error: float | None = None, profile: str = "spectral",
-         effort: int = 5, mask=None, progress: Callable[[float], object] | None = None) -> bytes:
+         effort: int = 5, mask=None, zeros: str = "auto", progress: Callable[[float], object] | None = None) -> bytes:
     """Packs one material into a record, which Writer.add takes.
 
     table: (H, D, P, 3) real numbers in 1/sr, extents from 4 to 1024, or the path of a MERL file. A cell with a negative value, NaN or infinity in any channel counts as not
@@ -84,9 +86,15 @@ def pack(table, budget: int | None = None, *, name: str | None = None, max_error
     instead, the smallest record whose log RMSE is at most this, 1e-6 to 10. profile: "spectral" or "paper". effort: 1 to 9. progress is
     called with the share that is done, 0 to 1; what it raises ends the packing. Of a file, with its name, this is the record that
     `brdfpack build` makes: one that `brdfpack extract` wrote gives the record it carries, where `build` would keep it.
+
+    zeros: what cells mean that are 0 in all channels. "auto": where no value is negative, a value that all cells below the horizon
+    hold, 0 or another constant, is no measurement; a warning tells how many, and so does Info.source_holes. "holes": besides, every
+    cell that is 0 in all channels. "measured": values are taken as they are.
     """
     if profile not in PROFILES:
         raise ValueError(f"{profile!r} is neither 'spectral' nor 'paper'")
+    if zeros not in ZEROS:
+        raise ValueError(f"{zeros!r} is neither 'auto' nor 'holes' nor 'measured'")
     if budget is not None and max_error is not None:
         raise ValueError("a budget and an error bound exclude each other")
     if max_error == 0:
@@ -117,16 +125,21 @@ def pack(table, budget: int | None = None, *, name: str | None = None, max_error
         "scale": scale, "source_bytes": source_bytes, "source_sha256": sha256})
     options = ffi.new("bp_pack_options *", {
         "struct_bytes": ffi.sizeof("bp_pack_options"), "profile": PROFILES[profile], "budget_bytes": option(budget, "budget"), "max_error": max_error or 0.0,
-        "effort": option(effort, "effort"), "progress": lib.tell_python if watched else ffi.NULL, "user": handle})
+        "effort": option(effort, "effort"), "zeros": ZEROS.index(zeros), "progress": lib.tell_python if watched else ffi.NULL, "user": handle})
     status = lib.bp_pack(measured, name_bytes("material" if name is None else name), options, record, count, error)
     if watch.raised is not None:
         lib.bp_free(record[0])
         raise watch.raised
     check(status, error)
     try:
-        return ffi.buffer(record[0], count[0])[:]
+        packed = ffi.buffer(record[0], count[0])[:]
     finally:
         lib.bp_free(record[0])
+    holes = int.from_bytes(packed[52:56], "little") & 0xFFFFFFF  # FORMAT.md, section 5
+    if holes and zeros == "auto":
+        warnings.warn(f"{name or 'material'}: no value is negative, and {holes} cells below the horizon hold one value: treated as not "
+                      "measured (unless zeros='measured')", stacklevel=2)
+    return packed
 
 
 class Writer(NoPickle):

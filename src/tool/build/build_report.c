@@ -7,16 +7,43 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-enum { WARNINGS_MAX = 2, WARNING_BYTES = 200 };
+enum { WARNINGS_MAX = 3, WARNING_BYTES = 400 };
 static const char *const ORIGIN_NAMES[] = {[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_KEPT] = "kept"};
 
-/* What is odd about a material that was packed nevertheless. */
-static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES])
+/* The warning that values were taken for marks. */
+static void holes_describe(const struct outcome *outcome, char text[WARNING_BYTES])
+{
+	const struct holes *holes = &outcome->holes;
+	const double *v = holes->value;
+	char what[100], black[120] = "";
+
+	if (v[0] == 0 && v[1] == 0 && v[2] == 0)
+		snprintf(what, sizeof what, "0 in all channels");
+	else
+		snprintf(what, sizeof what, "%.3g, %.3g, %.3g /sr", v[0], v[1], v[2]);
+	if (holes->black_count > 0)
+		snprintf(black, sizeof black, "; %zu that are 0 above the horizon stay black (--zeros=holes if they are holes too)",
+		         holes->black_count);
+	if (outcome->head.options.zeros == ZEROS_HOLES)
+		snprintf(text, WARNING_BYTES, "%zu cells that are 0 in all channels are treated as not measured (--zeros=holes)",
+		         holes->count);
+	else
+		snprintf(
+			text, WARNING_BYTES,
+			"no value is negative, and %zu cells below the horizon are %s: treated as not measured (unless --zeros=measured)%s",
+			holes->count, what, black);
+}
+
+/* What is odd about a material that was packed nevertheless; the first `*said` of them are faults of the file, the rest stands in --json. */
+static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES], int *said)
 {
 	int count = 0;
 	if (outcome->source.nonfinite_count > 0)
 		snprintf(texts[count++], WARNING_BYTES, "%" PRIu64 " cells are NaN or infinite; they are treated as not measured",
 		         outcome->source.nonfinite_count);
+	if (outcome->holes.count > 0)
+		holes_describe(outcome, texts[count++]);
+	*said = count;
 	for (int c = 0; c < 3; c++)
 		if (!outcome->head.colour[c].converged) {
 			snprintf(texts[count++], WARNING_BYTES, "the colour regression did not converge in %" PRIu32 " iterations (%s)",
@@ -65,7 +92,7 @@ static void material_json(const struct item *item, const char *label, const stru
 	json_string(&json, "name", item->source.name);
 	json_string(&json, "path", label);
 	char warnings[WARNINGS_MAX][WARNING_BYTES];
-	int count = warnings_list(outcome, warnings);
+	int said, count = warnings_list(outcome, warnings, &said);
 	json_integer(&json, "bytes", outcome->head.record_bytes);
 	json_number(&json, "seconds", outcome->seconds);
 	json_object(&json, "cpu_seconds");
@@ -94,11 +121,11 @@ void report_material(const struct item *item, const struct outcome *outcome, boo
 	}
 	if (json)
 		material_json(item, label, outcome);
-	if (outcome->source.nonfinite_count > 0 && !quiet) { /* a fault of the file; the rest stands in --json */
-		char warnings[WARNINGS_MAX][WARNING_BYTES];
-		warnings_list(outcome, warnings);
-		report_warning(label, item->source.name, "%s", warnings[0]);
-	}
+	char warnings[WARNINGS_MAX][WARNING_BYTES];
+	int said;
+	warnings_list(outcome, warnings, &said);
+	for (int i = 0; i < said && !quiet; i++)
+		report_warning(label, item->source.name, "%s", warnings[i]);
 }
 
 static void summary_json(const char *output, bool written, const struct build_totals *totals)

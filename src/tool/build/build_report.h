@@ -26,6 +26,7 @@ struct outcome {
 	double stage_seconds[STAGE_COUNT];
 	struct record_head head;
 	struct record_source source; /* the file */
+	struct holes holes;
 	enum record_origin origin;
 };
 

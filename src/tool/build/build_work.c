@@ -128,7 +128,10 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 	delivery.source.nonfinite_count = lattice.nonfinite_count;
 	sha256_finish(&sha, delivery.source.sha256);
 	stage_enter(STAGE_REST);
-	status = record_get(build, job->name, &lattice, &carried, &delivery, &record, &record_bytes, error);
+	status = lattice_take_holes(&lattice, build->options->fit.zeros, &delivery.holes, error);
+	delivery.source.hole_count = (uint32_t)delivery.holes.count;
+	if (!status)
+		status = record_get(build, job->name, &lattice, &carried, &delivery, &record, &record_bytes, error);
 	lattice_free(&lattice);
 	free(carried.bytes);
 	return status ? status : delivery_make(&delivery, record, record_bytes, out, out_bytes, error);

@@ -7,6 +7,7 @@
 /* What a worker delivers: this, and the record behind it. */
 struct delivery {
 	struct record_source source; /* the file that was read; of a record that was kept, its head has the measured one */
+	struct holes holes;          /* what was made of values that stand for "not measured" */
 	enum record_origin origin;
 };
 

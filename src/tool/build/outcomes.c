@@ -52,6 +52,7 @@ static bp_status delivery_accept(struct build *build, struct item *item, const s
 	if (!status && entry)
 		status = manifest_check(entry, delivery.source.bytes, delivery.source.sha256, error);
 	outcome->source = delivery.source;
+	outcome->holes = delivery.holes;
 	outcome->origin = delivery.origin;
 	return status;
 }

@@ -21,7 +21,8 @@ enum {
 	OPTION_ANY_LATTICE,
 	OPTION_SHARD,
 	OPTION_FORCE,
-	OPTION_CHARSET
+	OPTION_CHARSET,
+	OPTION_ZEROS
 };
 
 enum { SHARDS_MOST = 65536 };
@@ -68,6 +69,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 		{"charset", required_argument, NULL, OPTION_CHARSET},
 		{"shard", required_argument, NULL, OPTION_SHARD},
 		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
+		{"zeros", required_argument, NULL, OPTION_ZEROS},
 		{0},
 	};
 	struct build_options options = {
@@ -100,6 +102,10 @@ static int build_main(const struct command *self, int argc, char **argv)
 		case OPTION_PROFILE:
 			if (!option_profile(self, optarg, &options.fit.profile))
 				return EXIT_USAGE;
+			break;
+		case OPTION_ZEROS:
+			if (!zeros_parse(optarg, &options.fit.zeros))
+				return report_usage(self, "--zeros: '%s' is neither 'auto' nor 'holes' nor 'measured'", optarg);
 			break;
 		case OPTION_BUDGET:
 			if (!option_bytes(self, "--budget", optarg, RECORD_BUDGET_MIN, RECORD_BUDGET_MAX, &number))
@@ -154,6 +160,8 @@ const struct command command_build = {
 			 "                         BYTES may end in k, M, KiB or MiB\n"
 			 "      --max-error E      instead: the smallest record whose log RMSE is at most E\n"
 			 "      --effort N         1 (fast) to 9 (small); default 5\n"
+			 "      --zeros RULE       where no value is negative, zeros below the horizon are holes (auto); so is\n"
+			 "                         every cell that is 0 in all channels (holes); or none is (measured)\n"
 			 "      --manifest FILE    only the listed materials; where the list has sizes and SHA-256,\n"
 			 "                         a file that differs is refused\n"
 			 "      --charset NAME     the character set of names in tars and zips that are not UTF-8\n"

@@ -88,6 +88,9 @@ static void material_print(const struct record_head *head)
 	printf(", effort %d\n", head->options.effort);
 	printf("  source      %" PRIu64 " bytes, SHA-256 %s\n", head->source.bytes, sha256);
 	printf("              %" PRIu64 " cells NaN or infinite\n", head->source.nonfinite_count);
+	if (head->source.hole_count > 0 || head->options.zeros != ZEROS_AUTO)
+		printf("              %" PRIu32 " cells taken as not measured for the value they hold (--zeros=%s)\n",
+		       head->source.hole_count, ZEROS_NAMES[head->options.zeros]);
 	printf("  lattice     %" PRIu32 " x %" PRIu32 " x %" PRIu32 " (theta_h, theta_d, phi_d), measured down to cosine %.4f\n",
 	       head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->horizon_limit);
 	for (uint32_t i = 0; i < head->layer_count; i++) {

@@ -52,7 +52,7 @@ static bool angles_parse(const struct command *command, const char *text, struct
 }
 
 /* The measured file that belongs to an archived material: the path itself, or NAME.binary in that folder. */
-static bp_status reference_read(const char *path, const char *name, struct lattice *out, bp_error *error)
+static bp_status reference_read(const char *path, const char *name, enum zeros_rule zeros, struct lattice *out, bp_error *error)
 {
 	struct stat status;
 	char *file = NULL;
@@ -60,6 +60,9 @@ static bp_status reference_read(const char *path, const char *name, struct latti
 	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && asprintf(&file, "%s/%s.binary", path, name) < 0)
 		return error_memory(error, 512);
 	bp_status result = lattice_read_path(file ? file : path, &(struct merl_reading){.any_dims = true}, out, &reason);
+	struct holes holes;
+	if (result == BP_OK && (result = lattice_take_holes(out, zeros, &holes, &reason)) != BP_OK)
+		lattice_free(out);
 	if (result != BP_OK)
 		error_set(error, result, reason.offset, "%s: %s", file ? file : path, reason.message);
 	free(file);
@@ -73,8 +76,11 @@ static bp_status material_pack(struct show *show, const struct show_options *opt
 	const struct record_source source = {0};
 	uint8_t *record = NULL;
 	size_t record_bytes;
-	bp_status status =
-		record_encode(&material->lattice, material->name, &source, &options->fit, &record, &record_bytes, &material->head, error);
+	struct holes holes;
+	bp_status status = lattice_take_holes(&material->lattice, options->fit.zeros, &holes, error);
+	if (status == BP_OK)
+		status = record_encode(&material->lattice, material->name, &source, &options->fit, &record, &record_bytes,
+		                       &material->head, error);
 	if (status == BP_OK)
 		status = record_decode_whole(&material->head, 0, record, &material->model, error);
 	free(record);
@@ -144,7 +150,7 @@ static int show_draw(struct show *show, const struct show_options *options)
 			return EXIT_FAILED;
 		}
 	} else if (options->reference) {
-		if (reference_read(options->reference, material->name, &show->reference, &error)) {
+		if (reference_read(options->reference, material->name, material->head.options.zeros, &show->reference, &error)) {
 			report_error(NULL, NULL, &error); /* names the file */
 			return EXIT_FAILED;
 		}

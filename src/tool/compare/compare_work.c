@@ -84,6 +84,7 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 	struct lattice lattice = {0};
 	struct expansion table = {0};
 	struct record_head head;
+	struct holes holes;
 	struct sha256 sha;
 	uint8_t digest[32];
 	bp_error reason;
@@ -102,6 +103,9 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 	    (status = decoded_load(compare, item, &head, 0, &table, error)) != BP_OK)
 		goto out;
 	result.record_bytes = head.record_bytes;
+	status = lattice_take_holes(&lattice, head.options.zeros, &holes, error);
+	if (status != BP_OK)
+		goto out;
 	status = comparison_measure(&compare->plans, &lattice, &table, &result.comparison, compare->images ? pictures : NULL, error);
 	for (int l = 0; status == BP_OK && l < LIGHTING_COUNT; l++)
 		if (pictures[l].rgb) {

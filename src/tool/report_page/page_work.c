@@ -81,9 +81,12 @@ static bp_status decoded_draw(struct page_job *job, struct subject *subject, bp_
 /* The same beside the measured table. A file that cannot be read is told in the page, and the material is drawn alone. */
 static bp_status measured_draw(struct page_job *job, struct subject *subject, bp_error *error)
 {
+	struct holes holes;
 	bp_error reason;
 	bp_status status = source_item_read(subject->item->source, &job->cursor, &(struct merl_reading){.any_dims = true},
 	                                    &subject->lattice, &reason);
+	if (status == BP_OK)
+		status = lattice_take_holes(&subject->lattice, subject->head.options.zeros, &holes, &reason);
 	if (status == BP_OK)
 		status =
 			comparison_measure(&job->plans, &subject->lattice, &subject->table, &subject->comparison, subject->spheres, &reason);
@@ -279,14 +282,18 @@ static void source_write(FILE *out, const struct subject *subject)
 	        "<td>%u × %u × %u cells<tr><th scope=row>record<td>%u bytes, of which %u are its head<tr><th scope=row>made with<td>",
 	        profile_name(head->profile), head->codec_version, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d,
 	        head->record_bytes, head->head_bytes);
+	char holes[80] = "";
+	if (head->source.hole_count > 0)
+		snprintf(holes, sizeof holes, ", %u taken as not measured for the value they hold", head->source.hole_count);
 	if (head->options.max_error > 0)
 		fprintf(out, "a log RMSE of at most %g", head->options.max_error);
 	else
 		fprintf(out, "a budget of %u bytes", head->options.budget_bytes);
-	fprintf(
-		out,
-		", effort %d<tr><th scope=row>measured file<td>%llu bytes, %llu cells not finite<tr><th scope=row>its SHA-256<td><code>",
-		head->options.effort, (unsigned long long)head->source.bytes, (unsigned long long)head->source.nonfinite_count);
+	fprintf(out,
+	        ", effort %d<tr><th scope=row>measured file<td>%llu bytes, %llu cells not finite%s<tr><th scope=row>its "
+	        "SHA-256<td><code>",
+	        head->options.effort, (unsigned long long)head->source.bytes, (unsigned long long)head->source.nonfinite_count,
+	        holes);
 	for (int n = 0; n < SHA256_BYTES; n++)
 		fprintf(out, "%02x%s", head->source.sha256[n], n % 8 == 7 ? "<wbr>" : "");
 	fprintf(out, "</code><tr><th scope=row>measured down to<td>%.2f° below the horizon</tbody></table>",
