@@ -128,6 +128,9 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out,
                               bp_error *error);
 
+/* Whether a build of this source with these options would make the record that has this head: codec version included. */
+bool record_answers(const struct record_head *head, const struct record_source *source, const struct fit_options *options);
+
 /*
  * Copies a record with layers 0..layers-1 only (0: all), its sections byte for byte: *out is malloc'ed. Where layers are
  * dropped its head says so in place of the codec version.

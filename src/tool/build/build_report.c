@@ -8,7 +8,8 @@
 #include <stdio.h>
 
 enum { WARNINGS_MAX = 2, WARNING_BYTES = 200 };
-static const char *const ORIGIN_NAMES[] = {[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_KEPT] = "kept"};
+static const char *const ORIGIN_NAMES[] = {
+	[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_RESUMED] = "resumed", [RECORD_KEPT] = "kept"};
 
 /* What is odd about a material that was packed nevertheless. */
 static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES])
