@@ -1,40 +1,4 @@
 /* fill_steps.inc.h: the steps of fill.h on one level. See fill_kernels.h. */
-#include <string.h>
-
-typedef int32_t KERNEL(marks8) __attribute__((vector_size(32)));
-typedef uint8_t KERNEL(bytes8) __attribute__((vector_size(8)));
-typedef int32_t KERNEL(marks4) __attribute__((vector_size(16)));
-
-/* Eight cells, 0 where they are invalid; and -1 where they are valid. */
-static inline __attribute__((always_inline)) void KERNEL(valid_take)(const float *value, const uint8_t *valid, floats8 *cells,
-                                                                     KERNEL(marks8) *marks)
-{
-	KERNEL(bytes8) bytes;
-	memcpy(&bytes, valid, sizeof bytes);
-	*marks = __builtin_convertvector(bytes, KERNEL(marks8)) != 0;
-	*cells = (floats8)((KERNEL(marks8))FLOATS8_LOAD(value) & *marks);
-}
-
-/* Four coarse cells from two rows of eight; returns how many have no valid child. */
-static inline __attribute__((always_inline)) unsigned KERNEL(halve_four)(const float *a, const float *b, const uint8_t *va,
-                                                                         const uint8_t *vb, float *value, uint8_t *valid)
-{
-	floats8 above, below;
-	KERNEL(marks8) ma, mb;
-	KERNEL(valid_take)(a, va, &above, &ma);
-	KERNEL(valid_take)(b, vb, &below, &mb);
-	/* In this order, as the sum of single cells is made. */
-	const floats4 sum = (__builtin_shufflevector(above, above, 0, 2, 4, 6) + __builtin_shufflevector(above, above, 1, 3, 5, 7)) +
-	                    (__builtin_shufflevector(below, below, 0, 2, 4, 6) + __builtin_shufflevector(below, below, 1, 3, 5, 7));
-	const KERNEL(marks8) both = ma + mb;
-	const KERNEL(marks4) n = -(__builtin_shufflevector(both, both, 0, 2, 4, 6) + __builtin_shufflevector(both, both, 1, 3, 5, 7));
-	const KERNEL(marks4) none = n == 0;
-	const floats4 mean = sum / __builtin_convertvector(n - none, floats4);
-	memcpy(value, &mean, sizeof mean);
-	for (int i = 0; i < 4; i++)
-		valid[i] = (uint8_t)(1 + none[i]);
-	return (unsigned)-(none[0] + none[1] + none[2] + none[3]);
-}
 
 /* Coarse cells from fine ones; returns how many coarse cells have no valid child. */
 static size_t KERNEL(fill_halve)(const struct fill_level *fine, const struct fill_level *coarse)
@@ -50,11 +14,8 @@ static size_t KERNEL(fill_halve)(const struct fill_level *fine, const struct fil
 		float *value = coarse->value + r * coarse->columns;
 		uint8_t *valid = coarse->valid + r * coarse->columns;
 		unsigned empty = 0;
-		size_t c = 0;
 
-		for (; c + 4 <= half; c += 4)
-			empty += KERNEL(halve_four)(a + 2 * c, b + 2 * c, va + 2 * c, vb + 2 * c, value + c, valid + c);
-		for (; c < half; c++) {
+		for (size_t c = 0; c < half; c++) {
 			int p = va[2 * c] != 0, q = va[2 * c + 1] != 0, s = vb[2 * c] != 0, t = vb[2 * c + 1] != 0, n = p + q + s + t;
 			float sum = ((p ? a[2 * c] : 0) + (q ? a[2 * c + 1] : 0)) + ((s ? b[2 * c] : 0) + (t ? b[2 * c + 1] : 0));
 			value[c] = sum / (float)(n ? n : 1);
