@@ -12,9 +12,9 @@
 enum { AROUND_MAX = 9 };
 static const uint8_t LIMIT[AROUND_MAX + 1] = {110, 95, 85, 80, 75, 70, 70, 65, 65, 60};
 
-/* The blocks that hold what is around a block's cells, but for their neighbours in the block. */
+/* The blocks that hold what is around a block's cells, but for the block itself. */
 struct surroundings {
-	const int32_t *own, *before2, *before, *after, *after2, *other[2];
+	const int32_t *before2, *before, *after, *after2, *other[2];
 };
 
 /* A block's sizes with a ring of zeros. */
@@ -33,7 +33,8 @@ static void sizes_fill(const struct level_block *block, int32_t size[RING_EDGE][
 
 static uint32_t around(const struct surroundings *s, const int32_t size[RING_EDGE][RING_EDGE], int k)
 {
-	const int32_t *up = &size[k / BLOCK_EDGE][k % BLOCK_EDGE], *here = up + RING_EDGE, *down = here + RING_EDGE;
+	const int y = k / BLOCK_EDGE, x = k % BLOCK_EDGE;
+	const int32_t *up = size[y] + x, *here = size[y + 1] + x, *down = size[y + 2] + x;
 	const int sum = 2 * (abs(s->before2[k]) + abs(s->after2[k])) + abs(s->before[k]) + abs(s->after[k]) + abs(s->other[0][k]) +
 	                abs(s->other[1][k]) + (up[0] + up[1] + up[2]) + (here[0] + here[2]) + (down[0] + down[1] + down[2]);
 	return sum < AROUND_MAX ? (uint32_t)sum : AROUND_MAX;
@@ -106,7 +107,6 @@ uint32_t planes_settle(struct planes *p, float rounding, float centre[2])
 						if (!*slot)
 							continue;
 						const struct surroundings s = {
-							p->levels[*slot].level,
 							p->levels[slot[-2 * next]].level,
 							p->levels[slot[-next]].level,
 							p->levels[slot[next]].level,
