@@ -130,7 +130,8 @@ static bp_status take_over(struct journal *journal, const uint8_t header[JOURNAL
 	bp_status status = entries_scan(journal, file_bytes, error);
 	if (status)
 		return status;
-	qsort(journal->found, journal->found_count, sizeof *journal->found, entry_compare);
+	if (journal->found_count > 0)
+		qsort(journal->found, journal->found_count, sizeof *journal->found, entry_compare);
 	if (journal->bytes < file_bytes) {
 		snprintf(remark, JOURNAL_REMARK_BYTES,
 		         "of an interrupted build's finished records %zu are whole; %llu bytes behind them are dropped",
