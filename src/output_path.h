@@ -1,5 +1,5 @@
 /*
- * output_path.h: where a file is to appear, and what it is called until then. Internal to output_file.h.
+ * output_path.h: where a file is to appear, and what it is called until then. For output_file.h and the journal of a build.
  */
 #ifndef OUTPUT_PATH_H
 #define OUTPUT_PATH_H

@@ -5,13 +5,14 @@
 
 Builds of small materials are killed, interrupted, starved of disk and memory, and have their calls fail. After
 each, the output must be the old archive or the new one, whole; the exit code 0 with the new one alone, another with the old; and after
-the next build nothing else may lie in the folder, nor before it unless a signal ended the build. The commands that
+the next build, which goes on from the journal or begins anew, nothing else may lie in the folder; before it, only after a failure, a journal. The commands that
 read archives have their calls fail too, with the same demands on the files they write. Prints one line per kind of fault.
 """
 import importlib.util
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -28,6 +29,7 @@ KILLS = os.path.abspath(sys.argv[sys.argv.index("--kills") + 1]) if "--kills" in
 random.seed(1)
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it, and so would every build
 failures = []
+JOURNAL = re.compile(r"\.brdfpack-[0-9a-f]{8}-journal")
 
 spec = importlib.util.spec_from_file_location("fixtures", HERE + "/cli/fixtures.py")
 fixtures = importlib.util.module_from_spec(spec)
@@ -51,6 +53,7 @@ class Place:
         self.out = folder + "/out"
         self.inputs = inputs or folder + "/in"
         self.target = self.out + "/out.bpk"
+        self.turns = self.journals = 0
         os.mkdir(self.out)
         if not inputs:
             os.mkdir(self.inputs)
@@ -79,8 +82,8 @@ class Place:
     def command(self, inputs=None):
         return [TOOL, "build", "--any-lattice", "--strict", "-q", "-j2", "-o", self.target] + (inputs or [self.inputs])
 
-    def run(self, inputs=None):
-        subprocess.run(self.command(inputs), check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60)
+    def run(self, inputs=None, options=()):
+        subprocess.run(self.command(inputs) + list(options), check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60)
 
     def reset(self):
         with open(self.target, "wb") as file:
@@ -95,10 +98,13 @@ class Place:
             fault(what + ": exit code 0 without the new archive")
         if code > 0 and now != self.old:
             fault("%s: exit code %d, but it was written" % (what, code))
-        if code >= 0 and os.listdir(self.out) != ["out.bpk"]:
-            fault("%s: it leaves %s" % (what, os.listdir(self.out)))
+        left = [name for name in os.listdir(self.out) if code == 0 or not JOURNAL.fullmatch(name)]
+        if code >= 0 and left != ["out.bpk"]:
+            fault("%s: it leaves %s" % (what, left))
+        self.journals += len(os.listdir(self.out)) > len(left)
+        self.turns += 1
         try:
-            self.run()
+            self.run(options=["--update"] if self.turns % 2 else [])
         except subprocess.SubprocessError as problem:
             fault("%s: the next build fails: %s" % (what, problem))
         if os.listdir(self.out) != ["out.bpk"] or read(self.target) != self.new:
@@ -195,6 +201,8 @@ def full_disk(place):
         if code == 0 and size < len(place.new):
             fault("a disk with %d bytes left: exit code 0" % size)
         place.check("a disk with %d bytes left" % size, code)
+    if not place.journals:
+        fault("no build left a journal, whatever ended it")
     print("full disk: %d sizes up to %d bytes" % (len(sizes), max(sizes)), flush=True)
 
 

@@ -89,14 +89,21 @@ export BRDFPACK_TEST_SLEEP=1
 line=$(scripts/slurm/submit.sh -n 4 -c 1 -o "$scratch/out.bpk" -- --any-lattice "$scratch/in") || fail "not submitted: $line"
 echo "$line"
 array=$(sed 's/.*job \([0-9]*\) (array.*/\1/' <<<"$line")
+# the journal of shard 2's archive
+journal=.brdfpack-$(python3 -c 'import zlib; print("%08x" % zlib.crc32(b"2.bpk"))')-journal
 merge=$(sed 's/.*merge: job \([0-9]*\);.*/\1/' <<<"$line")
-for _ in $(seq 60); do
-	[ "$(squeue -h -t R -j "${array}_2" | wc -l)" = 1 ] && break
-	sleep 0.5
+scontrol hold "$merge" # until the shards have been looked at
+# In the middle: a record of task 2 is finished, which is more than the journal's header, and others are not.
+for _ in $(seq 600); do
+	[ "$(find "$scratch/out.bpk.shards" -name "$journal" -size +300c | wc -l)" = 1 ] && break
+	sleep 0.1
 done
-sleep 2
 scontrol requeue "${array}_2" || fail "task 2 cannot be requeued"
 gone "$array" 120 || fail "the array does not end"
+resumed=$(grep -c '"record": *"resumed"' "$scratch/out.bpk.shards/2.json")
+[ "$resumed" -gt 0 ] || fail "the requeued task made all records anew"
+[ -z "$(find "$scratch/out.bpk.shards" -name '.brdfpack-*')" ] || fail "a journal is left"
+scontrol release "$merge"
 gone "$merge" 60 || fail "the merge does not end"
 [ -e "$scratch/out.bpk" ] || fail "no archive"
 cmp "$scratch/plain.bpk" "$scratch/out.bpk" || fail "another archive than that of one build"
@@ -108,4 +115,4 @@ mkdir "$scratch/local.bpk.shards"
 echo 4 >"$scratch/local.bpk.shards/count"
 scripts/slurm/submit.sh -l -n 4 -c 1 -o "$scratch/local.bpk" -- --any-lattice "$scratch/in" | tail -n 3
 cmp "$scratch/plain.bpk" "$scratch/local.bpk" || fail "under xargs: another archive than that of one build"
-echo "4 shards on Slurm, one requeued in the middle, and under xargs: the archive of one build"
+echo "4 shards on Slurm, one requeued in the middle ($resumed of its records resumed), and under xargs: the archive of one build"

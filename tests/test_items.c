@@ -1,4 +1,4 @@
-/* The set of materials of a build, its scratch file, and the progress line. */
+/* The set of materials of a build, and the progress line. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,7 +8,6 @@
 
 #include "tool/build/items.h"
 #include "tool/progress.h"
-#include "tool/build/spool.h"
 
 static void items_are_sorted_by_the_bytes_of_their_names(void **state)
 {
@@ -36,26 +35,6 @@ static void a_label_names_container_and_member(void **state)
 	assert_string_equal(label, "a.zip: x/gold.binary");
 }
 
-static void the_spool_gives_back_what_was_added(void **state)
-{
-	(void)state;
-	struct spool spool;
-	bp_error error;
-	uint64_t first, second;
-	uint8_t back[5];
-	assert_int_equal(spool_open("/tmp/no-such-file.bpk", &spool, &error), BP_OK);
-	assert_int_equal(spool_add(&spool, (const uint8_t *)"hello", 5, &first, &error), BP_OK);
-	assert_int_equal(spool_add(&spool, (const uint8_t *)"world", 5, &second, &error), BP_OK);
-	assert_int_equal(spool_read(&spool, second, back, 5, &error), BP_OK);
-	assert_memory_equal(back, "world", 5);
-	assert_int_equal(spool_read(&spool, first, back, 5, &error), BP_OK);
-	assert_memory_equal(back, "hello", 5);
-	assert_int_equal(spool_read(&spool, 8, back, 5, &error), BP_ERROR_IO);
-	spool_close(&spool);
-	spool_close(&spool);
-	assert_int_equal(spool_open("/nowhere/at/all.bpk", &spool, &error), BP_ERROR_IO);
-}
-
 static void the_progress_line_fits_the_terminal(void **state)
 {
 	(void)state;
@@ -75,7 +54,6 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(items_are_sorted_by_the_bytes_of_their_names),
 		cmocka_unit_test(a_label_names_container_and_member),
-		cmocka_unit_test(the_spool_gives_back_what_was_added),
 		cmocka_unit_test(the_progress_line_fits_the_terminal),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -140,7 +140,7 @@ static void zeros_below_the_horizon_are_holes(void **state)
 		struct record_head head;
 		measured.mask = ways[w].masked ? mask : NULL;
 		struct packed got = pack(&measured, "a", &options);
-		assert_int_equal(record_head_parse(got.bytes, got.count, &head, NULL), BP_OK);
+		assert_int_equal(record_head_read(got.bytes, got.count, &head, NULL), BP_OK);
 		assert_int_equal(head.source.hole_count, ways[w].same && !ways[w].masked ? holes : 0);
 		assert_int_equal(head.options.zeros, ways[w].zeros);
 		memset(got.bytes + 52, 0, 4);
@@ -200,7 +200,7 @@ static void an_extracted_table_keeps_its_record(void **state)
 	struct record_head head;
 	struct model *model;
 	struct expansion table = {0};
-	assert_int_equal(record_head_parse(first.bytes, first.count, &head, NULL), BP_OK);
+	assert_int_equal(record_head_read(first.bytes, first.count, &head, NULL), BP_OK);
 	assert_int_equal(record_decode_whole(&head, 0, first.bytes, &model, NULL), BP_OK);
 	assert_int_equal(expansion_alloc(DIMS, &table, NULL), BP_OK);
 	assert_int_equal(model_expand(model, 0, &table, NULL), BP_OK);

@@ -80,6 +80,33 @@ static void moments_weigh_large_coefficients_less(void **unused)
 	assert_memory_equal(got[0], got[1], sizeof got[0]);
 }
 
+static void worths_are_those_of_their_formula(void **unused)
+{
+	static const struct spectral_light lights[] = {{0.03, 150}, {1, 3}, {3, 1}};
+	static double radiance[N], worth[2][N], logarithm[2][N];
+	(void)unused;
+	for (int i = 0; i < N; i++)
+		radiance[i] = i % 100 ? pow(2, 40 * uniform() - 20) : 0;
+	for (size_t n = 0; n <= N; n += n < 20 ? 1 : 61)
+		for (int t = 0; t < 2; t++) {
+			for (size_t i = 0; i < n; i++)
+				logarithm[t][i] = radiance[i] + 0x1p-63;
+			table(t)->spectral_log2s(logarithm[t], n);
+			table(t)->spectral_worths(radiance, n, lights, 3, 0.3, worth[t]);
+		}
+	for (int i = 0; i < N; i++) {
+		double want = 0;
+		for (int l = 0; l < 3; l++) {
+			const double x = radiance[i] * lights[l].radiance, slope = pow(x + 0.3, 1 / 2.4 - 1) / fmax(x, 1);
+			want += lights[l].count * pow(slope * (x + 0.02 * lights[l].radiance), 2);
+		}
+		assert_true(fabs(worth[0][i] - want) <= 1e-12 * want);
+		assert_true(fabs(logarithm[0][i] - log2(radiance[i] + 0x1p-63)) < 1e-13);
+	}
+	assert_memory_equal(worth[0], worth[1], sizeof worth[0]);
+	assert_memory_equal(logarithm[0], logarithm[1], sizeof logarithm[0]);
+}
+
 static void a_filled_cell_becomes_the_mean_of_its_neighbours(void **unused)
 {
 	float x[2][N], old[N], beside[4][N], filled[N];
@@ -173,6 +200,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(logarithms_of_valid_cells_and_their_sum),
 		cmocka_unit_test(moments_weigh_large_coefficients_less),
+		cmocka_unit_test(worths_are_those_of_their_formula),
 		cmocka_unit_test(a_filled_cell_becomes_the_mean_of_its_neighbours),
 		cmocka_unit_test(coefficients_are_drawn_to_0_by_the_noise_around_them),
 		cmocka_unit_test(values_are_0_at_and_below_the_logarithms_of_0),

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "codec/profile_codec.h"
 #include "error.h"
 #include "writer.h"
 
@@ -249,7 +248,6 @@ bp_status archive_merge(const struct bp_archive *const *archives, size_t count, 
 bp_status archive_reuse(const struct bp_archive *archive, const char *name, const struct record_source *source,
                         const struct fit_options *options, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
-	const struct profile_codec *codec = profile_codec_find(options->profile);
 	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
@@ -264,12 +262,7 @@ bp_status archive_reuse(const struct bp_archive *archive, const char *name, cons
 		status = archive_entry_head(archive, &entry, &head, error);
 	if (status == BP_ERROR_MEMORY || status == BP_ERROR_IO)
 		return status;
-	bool same = !status && codec && head.codec_version == codec->version && head.profile == options->profile &&
-	            head.options.budget_bytes == options->budget_bytes && head.options.max_error == options->max_error &&
-	            head.options.effort == options->effort && head.options.zeros == options->zeros &&
-	            head.source.hole_count == source->hole_count && head.source.bytes == source->bytes &&
-	            !memcmp(head.source.sha256, source->sha256, SHA256_BYTES);
-	if (!same)
+	if (status || !record_answers(&head, source, options))
 		return BP_OK;
 	status = archive_entry_record(archive, &entry, &head, record, error);
 	*record_bytes = head.record_bytes;

@@ -1,7 +1,5 @@
 #include "range_coder.h"
 
-enum { RANGE_LEAST = 1 << 24 }; /* range is kept at or above this */
-
 void bit_models_reset(struct bit_model *models, size_t count)
 {
 	for (size_t i = 0; i < count; i++)
@@ -31,36 +29,10 @@ void range_encoder_start(struct range_encoder *encoder, struct byte_buffer *out)
 	*encoder = (struct range_encoder){.out = out, .range = UINT32_MAX, .pending = 1};
 }
 
-/* Moves the top byte of low out, once no later carry can change it. */
-static void low_shift(struct range_encoder *encoder)
+void range_bytes_write(struct byte_buffer *out, uint32_t cache, uint64_t pending, uint32_t carry, int first)
 {
-	if (encoder->low < UINT32_C(0xFF000000) || encoder->low > UINT32_MAX) {
-		uint32_t carry = (uint32_t)(encoder->low >> 32);
-		for (uint64_t i = 0; i < encoder->pending; i++)
-			if (encoder->started)
-				write_u8(encoder->out, (uint8_t)((i ? 0xFF : encoder->cache) + carry));
-			else
-				encoder->started = 1;
-		encoder->pending = 0;
-		encoder->cache = (uint32_t)(encoder->low >> 24) & 0xFF;
-	}
-	encoder->pending++;
-	encoder->low = (encoder->low & 0x00FFFFFF) << 8;
-}
-
-void range_encode_with(struct range_encoder *encoder, uint32_t p, uint32_t bit)
-{
-	uint32_t bound = (encoder->range >> 16) * p;
-	if (bit) {
-		encoder->low += bound;
-		encoder->range -= bound;
-	} else {
-		encoder->range = bound;
-	}
-	while (encoder->range < RANGE_LEAST) {
-		encoder->range <<= 8;
-		low_shift(encoder);
-	}
+	for (uint64_t i = first ? 1 : 0; i < pending; i++)
+		write_u8(out, (uint8_t)((i ? 0xFF : cache) + carry));
 }
 
 void range_encode(struct range_encoder *encoder, struct bit_model *model, uint32_t bit)
@@ -75,17 +47,14 @@ void range_encode_even(struct range_encoder *encoder, uint32_t value, uint32_t c
 		encoder->range >>= 1;
 		if (value >> count & 1)
 			encoder->low += encoder->range;
-		while (encoder->range < RANGE_LEAST) {
-			encoder->range <<= 8;
-			low_shift(encoder);
-		}
+		range_encoder_refill(encoder);
 	}
 }
 
 void range_encoder_end(struct range_encoder *encoder)
 {
 	for (int i = 0; i < 5; i++)
-		low_shift(encoder);
+		range_encoder_shift(encoder);
 }
 
 static uint32_t next_byte(struct range_decoder *decoder)

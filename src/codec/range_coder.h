@@ -31,8 +31,35 @@ void range_encoder_start(struct range_encoder *encoder, struct byte_buffer *out)
 void range_encode(struct range_encoder *encoder, struct bit_model *model, uint32_t bit);
 /* The lowest `count` bits of value (0..24), the highest first, each with probability 1/2. */
 void range_encode_even(struct range_encoder *encoder, uint32_t value, uint32_t count);
-/* A bit whose probability of being 0 is p / 65536, 1..65535, as somebody else knows it. */
-void range_encode_with(struct range_encoder *encoder, uint32_t p, uint32_t bit);
+/* Writes the bytes that were held back, now that their carry is known; `first`: their first one is not written. */
+void range_bytes_write(struct byte_buffer *out, uint32_t cache, uint64_t pending, uint32_t carry, int first);
+/* Moves the top byte of low out, once no later carry can change it. The encoder is passed on by its members, so that it can be in registers. */
+static inline void range_encoder_shift(struct range_encoder *encoder)
+{
+	if (encoder->low < UINT32_C(0xFF000000) || encoder->low > UINT32_MAX) {
+		range_bytes_write(encoder->out, encoder->cache, encoder->pending, (uint32_t)(encoder->low >> 32), !encoder->started);
+		encoder->started = 1;
+		encoder->pending = 0;
+		encoder->cache = (uint32_t)(encoder->low >> 24) & 0xFF;
+	}
+	encoder->pending++;
+	encoder->low = (encoder->low & 0x00FFFFFF) << 8;
+}
+static inline void range_encoder_refill(struct range_encoder *encoder)
+{
+	while (encoder->range < 1u << 24) { /* range is kept at or above this */
+		encoder->range <<= 8;
+		range_encoder_shift(encoder);
+	}
+}
+/* A bit whose probability of being 0 is p / 65536, 1..65535, as somebody else knows it. Without a branch on the bit: half of them surprise. */
+static inline void range_encode_with(struct range_encoder *encoder, uint32_t p, uint32_t bit)
+{
+	const uint32_t bound = (encoder->range >> 16) * p;
+	encoder->low += bound & -bit;
+	encoder->range = bit ? encoder->range - bound : bound;
+	range_encoder_refill(encoder);
+}
 /* Bytes that the stream would take if it were ended now. */
 static inline size_t range_encoder_bytes(const struct range_encoder *encoder, size_t start)
 {

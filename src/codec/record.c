@@ -29,6 +29,16 @@ bp_status record_verify(const uint8_t *record, size_t count, struct record_head 
 	return BP_OK;
 }
 
+bool record_answers(const struct record_head *head, const struct record_source *source, const struct fit_options *options)
+{
+	const struct profile_codec *codec = profile_codec_find(options->profile);
+	return codec && head->codec_version == codec->version && head->profile == options->profile &&
+	       head->options.budget_bytes == options->budget_bytes && head->options.max_error == options->max_error &&
+	       head->options.effort == options->effort && head->options.zeros == options->zeros &&
+	       head->source.hole_count == source->hole_count && head->source.bytes == source->bytes &&
+	       !memcmp(head->source.sha256, source->sha256, SHA256_BYTES);
+}
+
 static bool kind_among(const struct section_kind *kinds, uint32_t count, const struct record_section *entry)
 {
 	for (uint32_t i = 0; i < count; i++)

@@ -44,6 +44,9 @@ enum section_flag {
 	SECTION_ONLY_R = 4    /* needed for channel R alone; for G and B twice and four times this */
 };
 
+/* The word of a head that says what became of a source's zeros: cells taken as holes, and the rule from this bit on. */
+enum { HEAD_ZEROS_SHIFT = 28 };
+
 /* The measured file a record was made from. */
 struct record_source {
 	uint64_t bytes;
@@ -132,6 +135,9 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 /* The same from a record that is in memory, all head->record_bytes of it. */
 bp_status record_decode_whole(const struct record_head *head, uint32_t layers, const uint8_t *record, struct model **out,
                               bp_error *error);
+
+/* Whether a build of this source with these options would make the record that has this head: codec version included. */
+bool record_answers(const struct record_head *head, const struct record_source *source, const struct fit_options *options);
 
 /*
  * Copies a record with layers 0..layers-1 only (0: all), its sections byte for byte: *out is malloc'ed. Where layers are

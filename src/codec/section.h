@@ -10,9 +10,6 @@
 #include "bytes.h"
 #include "record.h"
 
-/* The word of a head that says what became of a source's zeros: cells taken as holes, and the rule from this bit on. */
-enum { HEAD_ZEROS_SHIFT = 28 };
-
 struct section_list {
 	uint32_t count;
 	struct record_section entry[RECORD_SECTIONS_MAX]; /* offset, bytes and crc32 are sections_join's to fill */

@@ -3,6 +3,7 @@
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "error.h"
 #include "lattice.h"
@@ -145,9 +146,19 @@ bp_status lattice_seen(struct lattice_dims dims, uint8_t *seen, bp_error *error)
 	if (status != BP_OK)
 		return status;
 	highest_fill(dims, &highest);
+	double least = 1, most = 0;
+	for (uint32_t k = 0; k < dims.phi_d; k++) {
+		least = fmin(least, highest.cos_p[k]);
+		most = fmax(most, highest.cos_p[k]);
+	}
 	for (uint32_t i = 0; i < dims.theta_h; i++)
 		for (uint32_t j = 0; j < dims.theta_d; j++, seen += dims.phi_d) {
 			const double a = highest.cos_d[j] * highest.cos_h[i], q = highest.sin_d[j] * highest.sin_h[i];
+			/* Rounding keeps order, so the extremes tell of most rows as a whole. */
+			if (a - q * most > 0 || !(a - q * least > 0)) {
+				memset(seen, a - q * most > 0, dims.phi_d);
+				continue;
+			}
 			for (uint32_t k = 0; k < dims.phi_d; k++)
 				seen[k] = a - q * highest.cos_p[k] > 0;
 		}

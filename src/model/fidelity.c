@@ -7,9 +7,9 @@
 #include "error.h"
 #include "fidelity_kernels.h"
 
-/* Adds the cells `valid` of slice i of all tables to their totals. */
+/* Adds the valid cells of slice i of all tables to their totals; `hidden` are those of them that cannot be seen. */
 static void slice_add(const struct lattice *truth, const struct expansion *tables, uint32_t count, uint32_t i,
-                      const uint8_t *valid, const float *cosine, struct fidelity_sums *total)
+                      const uint8_t *hidden, const float *cosine, struct fidelity_sums *total)
 {
 	const size_t slice = (size_t)truth->dims.theta_d * truth->dims.phi_d, at = i * slice;
 	struct fidelity_sums sums[LAYERS_MAX];
@@ -20,10 +20,11 @@ static void slice_add(const struct lattice *truth, const struct expansion *table
 	for (int c = 0; c < 3; c++) {
 		for (uint32_t t = 0; t < count; t++)
 			table[t] = (struct fidelity_table){tables[t].rgb[c] + at, tables[t].unit, &sums[t]};
-		fidelity_kernels_get()->fidelity_slice(truth->rgb[c] + at, valid, cosine, slice, table, count);
+		fidelity_kernels_get()->fidelity_slice(truth->rgb[c] + at, truth->valid + at, hidden + at, cosine, slice, table, count);
 	}
 	for (uint32_t t = 0; t < count; t++) {
 		total[t].log_squares += sums[t].log_squares;
+		total[t].hidden_log_squares += sums[t].hidden_log_squares;
 		total[t].cube_root_squares += sums[t].cube_root_squares;
 		total[t].largest_relative = sums[t].largest_relative;
 	}
@@ -33,7 +34,7 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
                                bp_error *error)
 {
 	const struct lattice_dims dims = truth->dims;
-	struct fidelity_sums total[LAYERS_MAX] = {{0, 0, 0}}, hidden[LAYERS_MAX] = {{0, 0, 0}};
+	struct fidelity_sums total[LAYERS_MAX] = {{0}};
 	struct corner_cosines *cosines = NULL;
 	uint8_t *unseen = NULL;
 	size_t unseen_count = 0;
@@ -57,15 +58,15 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
 		unseen_count += unseen[n] = truth->valid[n] & !unseen[n];
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
 		corner_cosines_slice(cosines, i, cosine);
-		slice_add(truth, tables, count, i, truth->valid + i * slice, cosine, total);
-		slice_add(truth, tables, count, i, unseen + i * slice, cosine, hidden); /* few: most blocks have none */
+		slice_add(truth, tables, count, i, unseen, cosine, total);
 	}
 	const double n = 3.0 * (double)truth->valid_count, n_seen = 3.0 * (double)(truth->valid_count - unseen_count);
 	const double log10_of_2 = 0.30102999566398120;
 	for (uint32_t t = 0; t < count; t++) {
 		out[t].log_rmse = log10_of_2 * sqrt(total[t].log_squares / n);
-		out[t].seen_log_rmse =
-			n_seen > 0 ? log10_of_2 * sqrt(fmax(total[t].log_squares - hidden[t].log_squares, 0) / n_seen) : out[t].log_rmse;
+		out[t].seen_log_rmse = n_seen > 0
+		                           ? log10_of_2 * sqrt(fmax(total[t].log_squares - total[t].hidden_log_squares, 0) / n_seen)
+		                           : out[t].log_rmse;
 		out[t].cube_root_rmse = sqrt(total[t].cube_root_squares / n);
 		out[t].largest_relative = total[t].largest_relative < DBL_MAX ? total[t].largest_relative : DBL_MAX;
 	}

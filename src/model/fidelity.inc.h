@@ -14,12 +14,25 @@ struct KERNEL(fidelity_block) {
 	double root[FIDELITY_BLOCK];    /* cbrt(b cosine) */
 	double inverse[FIDELITY_BLOCK]; /* 1/b, where near is 0 any; set when first needed */
 	double shifted_inverse[FIDELITY_BLOCK];
-	bool has_inverse, has_shifted_inverse;
+	double hidden[FIDELITY_BLOCK]; /* 1 where a cell cannot be seen, else 0; only set where any_hidden */
+	bool has_inverse, has_shifted_inverse, any_hidden;
 };
 
 struct KERNEL(fidelity_squares) {
-	lanes4 logs, cubes;
+	lanes4 logs, cubes, hidden;
 };
+
+/* Few blocks hold a hidden cell. */
+static inline void KERNEL(fidelity_hide)(const uint8_t *hidden, size_t m, struct KERNEL(fidelity_block) *t)
+{
+	unsigned any = 0;
+
+	for (size_t l = 0; l < m; l++)
+		any |= hidden[l];
+	t->any_hidden = any != 0;
+	for (size_t l = 0; any && l < FIDELITY_BLOCK; l++)
+		t->hidden[l] = l < m && hidden[l] ? 1 : 0;
+}
 
 /* The first m cells of a block from the tables, the others made not to count. */
 static inline void KERNEL(fidelity_prepare)(const double *b, const uint8_t *valid, const float *cosine, size_t m,
@@ -62,10 +75,11 @@ static inline void KERNEL(fidelity_prepare)(const double *b, const uint8_t *vali
  *
  * Both are polynomials of least relative error on these ranges: 1e-15, 2e-15.
  */
-static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *difference,
-                                          struct KERNEL(fidelity_squares) *to)
+static inline
+	__attribute__((always_inline)) void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *difference,
+                                                               bool any_hidden, struct KERNEL(fidelity_squares) *to)
 {
-	lanes4 logs = {0, 0, 0, 0}, cubes = {0, 0, 0, 0};
+	lanes4 logs = {0, 0, 0, 0}, cubes = {0, 0, 0, 0}, hidden = {0, 0, 0, 0};
 
 	if (!t->has_inverse)
 		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
@@ -78,7 +92,10 @@ static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, cons
 		p = p * z + LANES_ALL(0.96179669401644918);
 		p = p * z + LANES_ALL(2.8853900817779237);
 		p *= s;
-		logs += p * p;
+		p *= p;
+		logs += p;
+		if (any_hidden)
+			hidden += p * LANES_LOAD(t->hidden + l);
 
 		/* Even and odd powers apart: half as long a chain. */
 		const lanes4 r = d * LANES_LOAD(t->inverse + l), q = r * r;
@@ -94,6 +111,7 @@ static inline void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, cons
 	}
 	to->logs = logs;
 	to->cubes = cubes;
+	to->hidden = hidden;
 }
 
 static inline void KERNEL(fidelity_far)(struct KERNEL(fidelity_block) *t, const double *e, struct KERNEL(fidelity_squares) *to)
@@ -108,11 +126,15 @@ static inline void KERNEL(fidelity_far)(struct KERNEL(fidelity_block) *t, const 
 		logs[l] = fast_log2((e[l] + 1e-3) * t->shifted_inverse[l]);
 	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
 		cubes[l] = fast_cbrt(e[l] * t->cosine[l]) - t->root[l];
-	*to = (struct KERNEL(fidelity_squares)){{0, 0, 0, 0}, {0, 0, 0, 0}};
+	*to = (struct KERNEL(fidelity_squares)){{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
 	for (size_t l = 0; l < FIDELITY_BLOCK; l += 4) {
 		const lanes4 x = LANES_LOAD(logs + l), y = LANES_LOAD(cubes + l);
 		to->logs += x * x;
 		to->cubes += y * y;
+	}
+	for (size_t l = 0; t->any_hidden && l < FIDELITY_BLOCK; l += 4) {
+		const lanes4 x = LANES_LOAD(logs + l);
+		to->hidden += x * x * LANES_LOAD(t->hidden + l);
 	}
 }
 
@@ -154,13 +176,17 @@ static inline void KERNEL(fidelity_add)(struct KERNEL(fidelity_block) *t, const 
 		sums->largest_relative = KERNEL(fidelity_largest)(t, d, sums->largest_relative);
 	if (far)
 		KERNEL(fidelity_far)(t, e, &squares);
+	else if (t->any_hidden)
+		KERNEL(fidelity_close)(t, d, true, &squares);
 	else
-		KERNEL(fidelity_close)(t, d, &squares);
+		KERNEL(fidelity_close)(t, d, false, &squares);
 	sums->log_squares += lanes_sum(&squares.logs);
+	if (t->any_hidden)
+		sums->hidden_log_squares += lanes_sum(&squares.hidden);
 	sums->cube_root_squares += lanes_sum(&squares.cubes);
 }
 
-static void KERNEL(fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n,
+static void KERNEL(fidelity_slice)(const double *b, const uint8_t *valid, const uint8_t *hidden, const float *cosine, size_t n,
                                    const struct fidelity_table *tables, size_t count)
 {
 	struct KERNEL(fidelity_block) block;
@@ -174,6 +200,7 @@ static void KERNEL(fidelity_slice)(const double *b, const uint8_t *valid, const 
 		if (!any)
 			continue;
 		KERNEL(fidelity_prepare)(b + start, valid + start, cosine + start, m, &block);
+		KERNEL(fidelity_hide)(hidden + start, m, &block);
 		for (size_t k = 0; k < count; k++)
 			KERNEL(fidelity_add)(&block, tables[k].e + start, m, tables[k].unit, tables[k].sums);
 	}

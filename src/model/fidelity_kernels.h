@@ -8,7 +8,8 @@
 #include "model/math/kernels.h"
 
 struct fidelity_sums {
-	double log_squares; /* of log2 ratios */
+	double log_squares;        /* of log2 ratios */
+	double hidden_log_squares; /* of them, those of hidden cells */
 	double cube_root_squares;
 	double largest_relative;
 };
@@ -23,9 +24,9 @@ struct fidelity_table {
 struct fidelity_kernels {
 	/*
 	 * Adds the n cells of one channel of one theta_h slice to the sums of every table: b measured, unit * e decoded, in 1/sr;
-	 * cosine >= 0; cells with valid = 0 add nothing.
+	 * cosine >= 0; cells with valid = 0 add nothing. hidden <= valid.
 	 */
-	void (*fidelity_slice)(const double *b, const uint8_t *valid, const float *cosine, size_t n,
+	void (*fidelity_slice)(const double *b, const uint8_t *valid, const uint8_t *hidden, const float *cosine, size_t n,
 	                       const struct fidelity_table *tables, size_t count);
 };
 

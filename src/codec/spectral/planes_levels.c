@@ -6,45 +6,33 @@
 #include "error.h"
 #include "planes.h"
 
-/* Sixteen lanes at once: is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
+enum { LANES = 16 };
+
+/* Is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
 static inline int any_above(const float *x, uint32_t least_bits)
 {
-	uint32_t any = 0, bits[16];
+	uint32_t any = 0, bits[LANES];
 	memcpy(bits, x, sizeof bits);
-	for (int q = 0; q < 16; q++)
+	for (int q = 0; q < LANES; q++)
 		any |= (uint32_t)((int32_t)(bits[q] & 0x7fffffff) >= (int32_t)least_bits);
 	return any != 0;
 }
 
-/* The block of a coefficient of `band` that has a level; it gets a place in the pool where it has none. */
-static struct level_block *level_block_at(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band,
-                                          uint32_t y, uint32_t x)
+/* The coefficient's level, where it is not 0, in its block, which gets a place in the pool where it has none. */
+static inline void level_place(struct planes *p, uint32_t *slot, uint32_t place, float coefficient, float inverse, float rounding)
 {
-	const size_t at = (size_t)(harmonic + 2) * p->bands.blocks + band->block_at + (size_t)(y / BLOCK_EDGE) * band->block_stride +
-	                  x / BLOCK_EDGE;
-	uint32_t *slot = &p->level_slot[field][at];
-
-	if (!*slot) {
-		*slot = p->levels_count++;
-		memset(&p->levels[*slot], 0, sizeof *p->levels);
-	}
-	return &p->levels[*slot];
-}
-
-static uint32_t place_in_block(uint32_t y, uint32_t x) { return y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE; }
-
-/* The coefficient's level, where it is not 0, in its block. */
-static void level_place(struct planes *p, uint32_t field, uint32_t harmonic, const struct band *band, uint32_t y, uint32_t x,
-                        float coefficient, float inverse, float rounding)
-{
-	const uint32_t place = place_in_block(y, x), most = (1u << SPECTRAL_PLANES_MAX) - 1;
+	const uint32_t most = (1u << SPECTRAL_PLANES_MAX) - 1;
 	const float size = fabsf(coefficient) * inverse;
 	uint32_t level = (uint32_t)(size + rounding);
 
 	if (!level)
 		return;
 	level = level < most ? level : most;
-	struct level_block *block = level_block_at(p, field, harmonic, band, y, x);
+	if (!*slot) {
+		*slot = p->levels_count++;
+		memset(&p->levels[*slot], 0, sizeof *p->levels);
+	}
+	struct level_block *block = &p->levels[*slot];
 	block->level[place] = coefficient < 0 ? -(int32_t)level : (int32_t)level;
 	block->over[place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
 }
@@ -54,6 +42,16 @@ static void levels_clear(struct planes *p)
 	p->levels_count = 1;
 	for (int f = 0; f < 3; f++)
 		memset(p->level_slot[f], 0, (size_t)(p->dims.phi_d + 4) * p->bands.blocks * sizeof *p->level_slot[f]);
+}
+
+/* Lanes first..first + count - 1, at most LANES, of one cell: slot and place are those of the cell's block in harmonic 0. */
+static inline void lanes_quantise(struct planes *p, uint32_t *slot, uint32_t place, const float *from, uint32_t first,
+                                  uint32_t count, float inverse, float rounding)
+{
+	for (uint32_t q = 0; q < count; q++)
+		if (fabsf(from[q]) * inverse + rounding >= 1)
+			level_place(p, slot + (size_t)spectrum_harmonic(p->dims.phi_d, first + q) * p->bands.blocks, place, from[q], inverse,
+			            rounding);
 }
 
 void planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding)
@@ -70,13 +68,14 @@ void planes_quantise(struct planes *p, float *const coefficient[3], float step, 
 			for (uint32_t y = 0; y < band->rows; y++)
 				for (uint32_t x = 0; x < band->columns; x++) {
 					const float *row = coefficient[f] + ((size_t)(band->row + y) * p->dims.theta_d + band->column + x) * lanes;
-					for (uint32_t lane = 0; lane < lanes; lane++) {
-						if (lane % 16 == 0 && lane + 16 <= lanes && !any_above(row + lane, least_bits)) {
-							lane += 15;
-							continue;
-						}
-						level_place(p, f, spectrum_harmonic(lanes, lane), band, y, x, row[lane], inverse, rounding);
-					}
+					uint32_t *slot = p->level_slot[f] + 2 * (size_t)p->bands.blocks + band->block_at +
+					                 (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
+					const uint32_t place = y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
+					for (uint32_t lane = 0; lane < lanes; lane += LANES)
+						if (lanes - lane < LANES)
+							lanes_quantise(p, slot, place, row + lane, lane, lanes - lane, inverse, rounding);
+						else if (any_above(row + lane, least_bits))
+							lanes_quantise(p, slot, place, row + lane, lane, LANES, inverse, rounding);
 				}
 		}
 }

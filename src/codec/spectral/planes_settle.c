@@ -12,21 +12,46 @@
 enum { AROUND_MAX = 9 };
 static const uint8_t LIMIT[AROUND_MAX + 1] = {110, 95, 85, 80, 75, 70, 70, 65, 65, 60};
 
-/* The blocks that hold what is around a block's cells, but for their neighbours in the block. */
+/* The blocks that hold what is around a block's cells, but for the block itself. */
 struct surroundings {
-	const int32_t *own, *before2, *before, *after, *after2, *other[2];
+	const int32_t *before2, *before, *after, *after2, *other[2];
 };
 
-static uint32_t around(const struct surroundings *s, int k)
+/* A block's sizes with a ring of zeros. */
+enum { RING_EDGE = BLOCK_EDGE + 2 };
+
+static void sizes_fill(const struct level_block *block, int32_t size[RING_EDGE][RING_EDGE])
+{
+	for (int x = 0; x < RING_EDGE; x++)
+		size[0][x] = size[RING_EDGE - 1][x] = 0;
+	for (int y = 0; y < BLOCK_EDGE; y++) {
+		size[y + 1][0] = size[y + 1][RING_EDGE - 1] = 0;
+		for (int x = 0; x < BLOCK_EDGE; x++)
+			size[y + 1][x + 1] = abs(block->level[y * BLOCK_EDGE + x]);
+	}
+}
+
+static uint32_t around(const struct surroundings *s, const int32_t size[RING_EDGE][RING_EDGE], int k)
 {
 	const int y = k / BLOCK_EDGE, x = k % BLOCK_EDGE;
-	int sum = 2 * (abs(s->before2[k]) + abs(s->after2[k])) + abs(s->before[k]) + abs(s->after[k]) + abs(s->other[0][k]) +
-	          abs(s->other[1][k]);
-
-	for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < BLOCK_EDGE; v++)
-		for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < BLOCK_EDGE; u++)
-			sum += v == y && u == x ? 0 : abs(s->own[v * BLOCK_EDGE + u]);
+	const int32_t *up = size[y] + x, *here = size[y + 1] + x, *down = size[y + 2] + x;
+	const int sum = 2 * (abs(s->before2[k]) + abs(s->after2[k])) + abs(s->before[k]) + abs(s->after[k]) + abs(s->other[0][k]) +
+	                abs(s->other[1][k]) + (up[0] + up[1] + up[2]) + (here[0] + here[2]) + (down[0] + down[1] + down[2]);
 	return sum < AROUND_MAX ? (uint32_t)sum : AROUND_MAX;
+}
+
+/* Bit k is 1 where level k is not 0. */
+static uint64_t levels_there(const struct level_block *block)
+{
+	uint64_t there = 0;
+	for (int y = 0; y < BLOCK_EDGE; y++) {
+		static const int32_t BIT[BLOCK_EDGE] = {1, 2, 4, 8, 16, 32, 64, 128};
+		int32_t row = 0;
+		for (int x = 0; x < BLOCK_EDGE; x++)
+			row |= block->level[y * BLOCK_EDGE + x] ? BIT[x] : 0;
+		there |= (uint64_t)row << y * BLOCK_EDGE;
+	}
+	return there;
 }
 
 struct tally {
@@ -39,13 +64,15 @@ struct tally {
 static uint8_t block_settle(struct level_block *block, const struct surroundings *s, const int limit[AROUND_MAX + 1],
                             double rounding, struct tally *tally)
 {
+	int32_t size_of[RING_EDGE][RING_EDGE];
 	uint32_t sizes = 0;
-	for (int k = 0; k < BLOCK_CELLS; k++) {
+	sizes_fill(block, size_of);
+	for (uint64_t left = levels_there(block); left; left &= left - 1) {
+		const int k = __builtin_ctzll(left);
 		const uint32_t size = (uint32_t)abs(block->level[k]);
-		if (size == 0)
-			continue;
-		if (size == 1 && block->over[k] < limit[0] && block->over[k] < limit[around(s, k)]) {
-			block->level[k] = 0;
+		if (size == 1 && block->over[k] < limit[0] &&
+		    block->over[k] < limit[around(s, (const int32_t(*)[RING_EDGE])size_of, k)]) {
+			block->level[k] = size_of[k / BLOCK_EDGE + 1][k % BLOCK_EDGE + 1] = 0;
 			continue;
 		}
 		tally->excess[size > 1] += (block->over[k] + 0.5) / 256 - rounding;
@@ -80,7 +107,6 @@ uint32_t planes_settle(struct planes *p, float rounding, float centre[2])
 						if (!*slot)
 							continue;
 						const struct surroundings s = {
-							p->levels[*slot].level,
 							p->levels[slot[-2 * next]].level,
 							p->levels[slot[-next]].level,
 							p->levels[slot[next]].level,

@@ -353,15 +353,21 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 	}
 }
 
-void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit) { unit_code(planes, coder, unit, 0); }
+void planes_encode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit)
+{
+	/* A copy that nothing else points to can stay in registers. */
+	struct range_encoder encoder = *coder->encoder;
+	struct mixed_coder own = {.encoder = &encoder, .tables = coder->tables};
+	unit_code(planes, &own, unit, 0);
+	*coder->encoder = encoder;
+}
 
 bp_status planes_decode_unit(struct planes *planes, struct mixed_coder *coder, uint32_t unit, bp_error *error)
 {
 	const bp_status status = planes_pool_grow(planes, error);
 	if (status)
 		return status;
-	/* A copy that nothing else points to can stay in registers. */
-	struct mixed_coder own = *coder;
+	struct mixed_coder own = *coder; /* likewise */
 	unit_code(planes, &own, unit, 1);
 	*coder = own;
 	return BP_OK;

@@ -9,6 +9,11 @@
 
 struct spectrum_term;
 
+/* So many lights of one strength, where white is 1. */
+struct spectral_light {
+	double radiance, count;
+};
+
 struct spectral_kernels {
 	/*
 	 * out[r][c] = sum over k < count of in[r][k] matrix[k][c], for `columns` (a multiple of 16) columns. The out rows are
@@ -77,6 +82,16 @@ struct spectral_kernels {
 	 */
 	void (*spectral_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold,
 	                        size_t n);
+
+	/* x = log2 x, of normal positive numbers. */
+	void (*spectral_log2s)(double *x, size_t n);
+
+	/*
+	 * out: the worth of a relative error of n values, each times its cosine, but for the other direction's cosine: the square of
+	 * what the error does to a pixel after the sRGB curve, summed over the lights; `ambient` is what else the pixel holds.
+	 */
+	void (*spectral_worths)(const double *radiance, size_t n, const struct spectral_light *lights, size_t light_count,
+	                        double ambient, double *out);
 };
 
 extern const struct spectral_kernels spectral_kernels_plain, spectral_kernels_avx2;

@@ -6,6 +6,7 @@
 #include "cosines.inc.h"
 #include "spectrum_inverse.inc.h"
 #include "spectral_values.inc.h"
+#include "spectral_worths.inc.h"
 
 const struct spectral_kernels KERNEL(spectral_kernels) = {
 	.cosine_product = KERNEL(cosine_product),
@@ -25,4 +26,6 @@ const struct spectral_kernels KERNEL(spectral_kernels) = {
 	.spectral_rotate = KERNEL(spectral_rotate),
 	.spectral_smooth = KERNEL(spectral_smooth),
 	.spectral_shrink = KERNEL(spectral_shrink),
+	.spectral_log2s = KERNEL(spectral_log2s),
+	.spectral_worths = KERNEL(spectral_worths),
 };

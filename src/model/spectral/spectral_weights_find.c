@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/math/fast_math.h"
+#include "spectral_kernels.h"
 
 enum { EDGE = SPECTRAL_WEIGHTS_EDGE, LEAST_CELLS = 2 * EDGE, PER_OCTAVE = 8, BINS = 128 * PER_OCTAVE };
 
@@ -14,9 +15,8 @@ static const double STEEPNESS = 0.8; /* 1: least for the picture; less: safer fo
 static const double LEAST = 0.05;    /* of the mean worth, even where nothing is seen */
 static const double EXPOSURE = 7;    /* white, where the 90 % point of value times cosine is 1: that of a sphere, within a half */
 static const double AMBIENT = 0.3;   /* of white: what else a pixel holds */
-static const struct {
-	double radiance, count;
-} LIGHTS[] = {{0.03, 150}, {0.15, 24}, {1, 3}, {3, 1}}; /* those of a sky, weak and strong lamps, where white is 1 */
+static const struct spectral_light LIGHTS[] = {
+	{0.03, 150}, {0.15, 24}, {1, 3}, {3, 1}}; /* those of a sky, weak and strong lamps, where white is 1 */
 enum { LIGHT_COUNT = sizeof LIGHTS / sizeof *LIGHTS };
 
 /* Cosines and sines of the cells' centres. */
@@ -54,32 +54,24 @@ struct survey {
 	struct region *regions; /* second pass: values are in units of white */
 };
 
-/* The worth of a relative error where a direction of this cosine sends light into one of cosine `other`: the square of what it does after the sRGB curve. */
-static double worth(double value, double cosine, double other)
-{
-	double sum = 0;
-	for (int l = 0; l < LIGHT_COUNT; l++) {
-		/* A pixel x + AMBIENT, of which x is this light's; the curve is a power of 1/2.4. Above white there is nothing to see. */
-		const double x = value * cosine * LIGHTS[l].radiance, share = x + 0.02 * LIGHTS[l].radiance;
-		double slope = fast_exp2(2 * (1 / 2.4 - 1) * fast_log2(x + AMBIENT));
-		if (x > 1)
-			slope /= x * x;
-		sum += LIGHTS[l].count * slope * share * share;
-	}
-	return sum * other;
-}
+enum { ROW_SPARSE = 90, EVERY = 15, SAMPLES_MAX = 2 * ROW_SPARSE }; /* two directions of each cell */
+_Static_assert(LATTICE_EXTENT_MAX / EVERY < ROW_SPARSE, "a row's samples have room");
 
 /* Every 15th cell of a row, another phi_d in each; all of a short one. */
 static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 {
+	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const struct lattice *lattice = s->lattice;
 	const struct lattice_dims d = lattice->dims;
 	const struct centres *c = s->centres;
-	const uint32_t every = d.phi_d < 90 ? 1 : 15;
+	const uint32_t every = d.phi_d < ROW_SPARSE ? 1 : EVERY;
 	const size_t row = lattice_index(d, i, j, 0);
 	/* Pairs of directions in a cell, up to a factor: d omega_h d omega_i = sin theta_h d theta_h 4 cos theta_d sin theta_d d theta_d d phi_d. */
 	const double directions = (i + 0.5) / d.theta_h * c->sin_h[i] * 2 * c->sin_d[j] * c->cos_d[j];
 	struct region *region = s->regions ? &s->regions[i * EDGE / d.theta_h * EDGE + j * EDGE / d.theta_d] : NULL;
+	double radiance[SAMPLES_MAX], other[SAMPLES_MAX],
+		worth[SAMPLES_MAX]; /* two of each cell: value times one cosine, and the other */
+	size_t n = 0;
 
 	for (uint32_t k = (3 * i + 5 * j) % every; k < d.phi_d; k += every) {
 		const double a = c->cos_d[j] * c->cos_h[i], b = c->sin_d[j] * c->sin_h[i] * c->cos_p[k];
@@ -87,21 +79,27 @@ static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 			region->cells++;
 		if (!lattice->valid[row + k] || a - b <= 0)
 			continue;
-		const double cosine[2] = {a - b, a + b};
 		const double value =
 			(lattice->rgb[0][row + k] * s->factor + lattice->rgb[1][row + k] * s->factor + lattice->rgb[2][row + k] * s->factor) /
 			3;
-		for (int n = 0; n < 2; n++) {
-			if (region) {
-				region->picture += directions * worth(value, cosine[n], cosine[1 - n]);
-				continue;
-			}
-			const double octave = fast_log2(fmin(fmax(value * cosine[n], 0x1p-63), 0x1p63));
-			s->bins[(int)((octave + 64) * PER_OCTAVE)] += directions * cosine[1 - n];
-		}
+		radiance[n] = value * (a - b);
+		other[n++] = a + b;
+		radiance[n] = value * (a + b);
+		other[n++] = a - b;
 		if (region)
 			region->seen++;
 	}
+	if (region) {
+		kernels->spectral_worths(radiance, n, LIGHTS, LIGHT_COUNT, AMBIENT, worth);
+		for (size_t m = 0; m < n; m++)
+			region->picture += directions * (worth[m] * other[m]);
+		return;
+	}
+	for (size_t m = 0; m < n; m++)
+		radiance[m] = fmin(fmax(radiance[m], 0x1p-63), 0x1p63);
+	kernels->spectral_log2s(radiance, n);
+	for (size_t m = 0; m < n; m++)
+		s->bins[(int)((radiance[m] + 64) * PER_OCTAVE)] += directions * other[m];
 }
 
 static void table_survey(const struct survey *s)

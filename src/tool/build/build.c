@@ -64,7 +64,7 @@ static void missing_report(struct build *build)
 	}
 }
 
-/* Spool -> archive, in name order. BP_OK without *written: a signal came. */
+/* Journal -> archive, in name order. BP_OK without *written: a signal came. */
 static bp_status archive_write(struct build *build, bool *written, bp_error *error)
 {
 	struct archive_writer *writer = NULL;
@@ -92,7 +92,7 @@ static bp_status archive_write(struct build *build, bool *written, bp_error *err
 				break;
 			}
 		}
-		status = spool_read(&build->spool, item->spool_offset, record, item->record_bytes, error);
+		status = journal_read(&build->journal, item->journal_offset, record, item->record_bytes, error);
 		if (!status)
 			status = archive_writer_add(writer, record, item->record_bytes, error);
 		build->totals.archive_bytes += item->record_bytes;
@@ -146,7 +146,18 @@ static bool shard_is_empty(const struct build *build)
 	return build->options->shard_count > 1 && build->items.count == 0 && build->sources.unwanted_count > 0;
 }
 
-/* Everything up to the records in the spool. */
+/* Where finished records go, and those that an interrupted build left. */
+static bp_status records_open(struct build *build, bp_error *error)
+{
+	const struct build_options *options = build->options;
+	char remark[JOURNAL_REMARK_BYTES];
+	bp_status status = journal_open(options->output, &options->fit, options->update, &build->journal, remark, error);
+	if (!status && *remark && !options->quiet)
+		report_warning(options->output, NULL, "%s", remark);
+	return status;
+}
+
+/* Everything up to the records in the journal. */
 static void build_prepare_and_work(struct build *build)
 {
 	const struct build_options *options = build->options;
@@ -170,7 +181,7 @@ static void build_prepare_and_work(struct build *build)
 	if ((build->items.count == 0 && !streams && !shard_is_empty(build)) ||
 	    (build->options->strict && !totals_whole(&build->totals)))
 		return;
-	if (output_look(build, true, &error) || previous_open(build, &error) || spool_open(options->output, &build->spool, &error)) {
+	if (output_look(build, true, &error) || previous_open(build, &error) || records_open(build, &error)) {
 		build_stop(build, options->output, NULL, &error);
 		return;
 	}
@@ -212,7 +223,7 @@ static void empty_report(const struct build *build)
 
 int build_run(const struct build_options *options)
 {
-	struct build build = {.options = options, .spool = {.fd = -1}};
+	struct build build = {.options = options, .journal = {.fd = -1}};
 	double start = clock_seconds();
 	bool written = false;
 	bp_error error;
@@ -228,17 +239,22 @@ int build_run(const struct build_options *options)
 	}
 	build.totals.seconds = clock_seconds() - start;
 	int signal_number = written ? 0 : interrupt_signal();
+	/* With --strict a refusal is the answer; what else ended it may be mended. */
+	const bool keep = !written && (signal_number || (build.stopped && !(options->strict && build.totals.refused > 0)));
 	if (signal_number)
 		report_text("%s: interrupted; not written", options->output);
 	else if (!build.stopped && build.items.count == 0 && whole && !written)
 		empty_report(&build);
 	else
 		report_summary(options, written, build.stopped, &build.totals);
+	if (keep && journal_count(&build.journal) > 0)
+		report_text("%s: finished records: %zu, kept in %s; the same build with --update goes on from them", options->output,
+		            journal_count(&build.journal), build.journal.path);
+	journal_close(&build.journal, keep);
 	manifest_free(&build.manifest);
 	items_free(&build.items);
 	free(build.order);
 	if (build.scanned)
 		source_list_free(&build.sources);
-	spool_close(&build.spool);
 	return signal_number ? 128 + signal_number : written && whole ? EXIT_OK : EXIT_FAILED;
 }

@@ -8,7 +8,8 @@
 #include <stdio.h>
 
 enum { WARNINGS_MAX = 3, WARNING_BYTES = 400 };
-static const char *const ORIGIN_NAMES[] = {[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_KEPT] = "kept"};
+static const char *const ORIGIN_NAMES[] = {
+	[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_RESUMED] = "resumed", [RECORD_KEPT] = "kept"};
 
 /* The warning that values were taken for marks. */
 static void holes_describe(const struct outcome *outcome, char text[WARNING_BYTES])

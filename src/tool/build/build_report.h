@@ -15,8 +15,9 @@
 /* Where a record comes from. */
 enum record_origin {
 	RECORD_FITTED,
-	RECORD_REUSED, /* taken unchanged from the older archive (--update) */
-	RECORD_KEPT    /* carried by its file (record_carried.h) */
+	RECORD_REUSED,  /* taken unchanged from the older archive (--update) */
+	RECORD_RESUMED, /* from what an interrupted build had finished (--update, journal.h) */
+	RECORD_KEPT     /* carried by its file (record_carried.h) */
 };
 
 /* What became of one material: everything that its report needs. */
@@ -35,7 +36,7 @@ struct build_totals {
 	uint64_t missing;         /* materials that the manifest lists and no input has */
 	uint64_t damaged;         /* inputs that could not be read, or not to their end, or that hold no material */
 	uint64_t skipped;         /* what was passed over without a loss; only a warning */
-	uint64_t reused, kept;    /* of the packed ones, by their records' origin */
+	uint64_t reused, kept;    /* of the packed ones, by their records' origin; what was resumed is reused */
 	uint64_t source_bytes, archive_bytes;
 	double seconds;
 };

@@ -5,6 +5,7 @@
  *     build_inputs.c  inputs -> items and streams; members of streams -> slots and items
  *     build_work.c    what a worker does with a job
  *     outcomes.c      what came of the items
+ *     journal.c       where finished records are until the archive is written, or until the next build
  *     build_report.c  what is said
  */
 #ifndef TOOL_BUILD_BUILD_STATE_H
@@ -13,8 +14,8 @@
 #include "build.h"
 #include "build_report.h"
 #include "items.h"
+#include "journal.h"
 #include "manifest.h"
-#include "spool.h"
 #include "tool/workers.h"
 
 struct build {
@@ -30,7 +31,7 @@ struct build {
 	struct container *stream; /* the stream that is being read */
 	size_t stream_next;       /* the stream after it, in sources.streams */
 	struct workers *workers;
-	struct spool spool;
+	struct journal journal;
 	struct build_totals totals;
 	uint64_t bytes_total, bytes_done; /* of the listed items, for the progress bar */
 	bp_archive *previous;             /* with --update, the archive that is there already; else NULL */

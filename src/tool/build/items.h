@@ -15,7 +15,7 @@ struct item {
 	bool owned;                /* source's strings are freed with the item; otherwise they are the source list's */
 	enum item_state state;
 	uint32_t record_bytes;
-	uint64_t spool_offset;
+	uint64_t journal_offset;
 	struct outcome *outcome; /* from the result until it is reported, which happens in the items' order */
 };
 

@@ -66,7 +66,7 @@ static void outcome_take(struct build *build, struct item *item, struct outcome 
 	} else {
 		item->state = ITEM_PACKED;
 		build->totals.packed++;
-		build->totals.reused += outcome->origin == RECORD_REUSED;
+		build->totals.reused += outcome->origin == RECORD_REUSED || outcome->origin == RECORD_RESUMED;
 		build->totals.kept += outcome->origin == RECORD_KEPT;
 		build->totals.source_bytes += outcome->source.bytes;
 	}
@@ -74,6 +74,19 @@ static void outcome_take(struct build *build, struct item *item, struct outcome 
 	item->outcome = outcome;
 	outcomes_report(build);
 	outcomes_show_progress(build);
+}
+
+/* Where the record stands until the archive is written: there already, where it was resumed. */
+static bp_status record_store(struct build *build, struct item *item, const struct outcome *outcome, const uint8_t *record,
+                              bp_error *error)
+{
+	const struct journal_entry *entry =
+		outcome->origin == RECORD_RESUMED ? journal_find(&build->journal, item->source.name) : NULL;
+	item->record_bytes = outcome->head.record_bytes;
+	if (!entry || entry->bytes != item->record_bytes)
+		return journal_add(&build->journal, record, item->record_bytes, &item->journal_offset, error);
+	item->journal_offset = entry->offset;
+	return BP_OK;
 }
 
 static struct outcome *outcome_create(struct build *build)
@@ -113,13 +126,11 @@ void outcomes_take_result(void *user, const struct job_result *result)
 	if (!outcome->error.status)
 		delivery_accept(build, item, result, outcome, &outcome->error);
 	if (!outcome->error.status) {
-		const uint8_t *record = result->record + sizeof(struct delivery);
-		if (spool_add(&build->spool, record, outcome->head.record_bytes, &item->spool_offset, &error)) {
+		if (record_store(build, item, outcome, result->record + sizeof(struct delivery), &error)) {
 			free(outcome);
 			build_stop(build, build->options->output, NULL, &error);
 			return;
 		}
-		item->record_bytes = outcome->head.record_bytes;
 	}
 	outcome_take(build, item, outcome);
 }

@@ -4,7 +4,7 @@
 
 #include "build_state.h"
 
-/* workers_result_fn; its user is the struct build. Records go to the spool. */
+/* workers_result_fn; its user is the struct build. Records go to the journal. */
 void outcomes_take_result(void *user, const struct job_result *result);
 
 /* Notes that an item cannot be packed; that is reported in its turn. */

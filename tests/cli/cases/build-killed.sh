@@ -1,4 +1,4 @@
-# The parent killed outright: workers end, nothing stays behind. A worker killed from outside: tried once more.
+# The parent killed outright: workers end, only a journal without records stays behind. A worker killed from outside: tried once more.
 needs_hooks
 fixture alpha beta gamma
 build -o out.bpk alpha.binary && cp out.bpk before
