@@ -130,15 +130,15 @@ static bp_status export_write(const struct selection *selection, const struct in
 {
 	struct model *model = NULL;
 	struct byte_buffer bytes = {0};
-	double psnr = 0;
+	struct deviation deviation;
 	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
 	if (!status)
-		status = export_material(model, head->name, options, &bytes, &psnr, error);
+		status = export_material(model, head->name, options, &bytes, &deviation, error);
 	if (!status)
 		status = bytes_write(&bytes, path, rule, error);
-	if (!status && psnr < EXPORT_POOR && rule != OUTPUT_COMPARE)
+	if (!status && deviation.psnr < EXPORT_POOR && rule != OUTPUT_COMPARE)
 		report_warning(path, NULL, "in %zu bytes it is %.1f dB from the material; a larger --size brings it nearer", bytes.count,
-		               psnr);
+		               deviation.psnr);
 	byte_buffer_free(&bytes);
 	model_free(model);
 	return status;

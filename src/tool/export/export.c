@@ -22,14 +22,14 @@ static void table_look_up(const void *user, size_t count, const float *const wi[
 }
 
 bp_status export_material(const struct model *model, const char *name, const struct export_options *options,
-                          struct byte_buffer *out, double *psnr, bp_error *error)
+                          struct byte_buffer *out, struct deviation *deviation, bp_error *error)
 {
 	struct table *table = NULL;
 	bp_status status = table_build_model(model, false, TABLE_EXPANDED, 3, &table, error);
 	const struct reflectance reflectance = {table_look_up, table};
 	if (!status)
-		status = options->format == EXPORT_MBSDF ? export_mbsdf(&reflectance, name, options, out, psnr, error)
-		                                         : export_bsdf(&reflectance, name, options, out, psnr, error);
+		status = options->format == EXPORT_MBSDF ? export_mbsdf(&reflectance, name, options, out, deviation, error)
+		                                         : export_bsdf(&reflectance, name, options, out, deviation, error);
 	table_free(table);
 	return status;
 }

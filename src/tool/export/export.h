@@ -10,6 +10,7 @@
 
 #include "brdfpack.h"
 #include "bytes.h"
+#include "deviation.h"
 #include "model/model.h"
 
 enum export_format { EXPORT_BSDF, EXPORT_MBSDF };
@@ -24,15 +25,13 @@ struct export_options {
 uint64_t export_bytes_usual(enum export_format format, bool spectral);
 uint64_t export_bytes_least(enum export_format format, bool spectral);
 
-/* PSNR in dB, of spheres under point and key lights, that a file's resolution is chosen for. */
-#define EXPORT_PSNR 50.0
 enum { EXPORT_BYTES_MAX = 1 << 30 };
 
 /*
- * Appends the file of a material to *out: the smallest that reaches EXPORT_PSNR, else the one of most_bytes that comes nearest. *psnr is what
- * it reaches. After a failure *out holds nothing of use. BP_ERROR_BAD_INPUT: values beyond what a float holds. BP_ERROR_MEMORY.
+ * Appends the file of a material to *out: the smallest that deviation_suffices of, else that of at most most_bytes with the highest PSNR;
+ * *deviation is the one it has. After a failure *out holds nothing of use. BP_ERROR_BAD_INPUT: values beyond what a float holds.
  */
 bp_status export_material(const struct model *model, const char *name, const struct export_options *options,
-                          struct byte_buffer *out, double *psnr, bp_error *error);
+                          struct byte_buffer *out, struct deviation *deviation, bp_error *error);
 
 #endif

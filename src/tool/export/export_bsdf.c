@@ -77,39 +77,39 @@ static void evaluate(const void *exported, const float wi[3], const float wo[3],
 
 /* The smallest of the shapes that reaches the figure and fits; else the best that fits. warped_free *out in any case. */
 static bp_status warped_choose(const struct reflectance *reflectance, const struct export_options *options, struct warped *out,
-                               double *psnr, bp_error *error)
+                               struct deviation *deviation, bp_error *error)
 {
-	struct sphere_reference *reference = NULL;
-	bp_status status = sphere_reference_make(reflectance, &reference, error);
-	*psnr = -HUGE_VAL;
-	for (int n = 0; !status && n < SIZE_COUNT && *psnr < EXPORT_PSNR; n++) {
+	struct deviation_reference *reference = NULL;
+	bp_status status = deviation_reference_make(reflectance, &reference, error);
+	*deviation = DEVIATION_WORST;
+	for (int n = 0; !status && n < SIZE_COUNT && !deviation_suffices(deviation); n++) {
 		const struct warped_shape shape = shape_of(SIZES[n]);
 		struct warped warped = {0};
-		double reached = 0;
+		struct deviation reached = DEVIATION_WORST;
 		if (bytes_of(SIZES[n], options->spectral) > options->most_bytes)
 			break;
 		status = warped_make(reflectance, &shape, &warped, error);
 		if (!status)
-			status = sphere_error(reference, evaluate, &warped, &reached, error);
-		if (!status && reached > *psnr) {
-			*psnr = reached;
+			status = deviation_measure(reference, evaluate, &warped, &reached, error);
+		if (!status && reached.psnr > deviation->psnr) {
+			*deviation = reached;
 			warped_free(out);
 			*out = warped;
 		} else {
 			warped_free(&warped);
 		}
 	}
-	sphere_reference_free(reference);
+	deviation_reference_free(reference);
 	return status;
 }
 
 bp_status export_bsdf(const struct reflectance *reflectance, const char *name, const struct export_options *options,
-                      struct byte_buffer *out, double *psnr, bp_error *error)
+                      struct byte_buffer *out, struct deviation *deviation, bp_error *error)
 {
 	struct parts parts = {.version = {1, 0}, .jacobian = 1};
 	struct warped warped = {0};
 	struct tensor tensor[FIELDS_MAX];
-	bp_status status = warped_choose(reflectance, options, &warped, psnr, error);
+	bp_status status = warped_choose(reflectance, options, &warped, deviation, error);
 	const size_t points = (size_t)warped.shape.size * warped.shape.size;
 	if (!status && options->spectral) {
 		const size_t count = points * warped.shape.angles * UPSAMPLING_COUNT;
@@ -126,7 +126,7 @@ bp_status export_bsdf(const struct reflectance *reflectance, const char *name, c
 		}
 		const int length = snprintf(parts.description, sizeof parts.description,
 		                            "%s; by brdfpack %s, %.1f dB from its record (spheres under point and key lights)", name,
-		                            bp_version_text(), *psnr);
+		                            bp_version_text(), deviation->psnr);
 		tensor_file_write(tensor, tensors_list(&warped, &parts, options->spectral, (uint64_t)length, tensor), out);
 		if (out->failed)
 			status = error_memory(error, out->count);

@@ -99,27 +99,27 @@ static void evaluate(const void *exported, const float wi[3], const float wo[3],
 }
 
 /* The smallest grid that reaches the figure and fits; else the best that fits. Its values are the caller's to free in any case. */
-static bp_status grid_choose(const struct reflectance *reflectance, uint64_t most_bytes, struct grid *out, double *psnr,
-                             bp_error *error)
+static bp_status grid_choose(const struct reflectance *reflectance, uint64_t most_bytes, struct grid *out,
+                             struct deviation *deviation, bp_error *error)
 {
-	struct sphere_reference *reference = NULL;
-	bp_status status = sphere_reference_make(reflectance, &reference, error);
-	*psnr = -HUGE_VAL;
-	for (int n = 0; !status && n < SIZE_COUNT && *psnr < EXPORT_PSNR && bytes_of(SIZES[n]) <= most_bytes; n++) {
+	struct deviation_reference *reference = NULL;
+	bp_status status = deviation_reference_make(reflectance, &reference, error);
+	*deviation = DEVIATION_WORST;
+	for (int n = 0; !status && n < SIZE_COUNT && !deviation_suffices(deviation) && bytes_of(SIZES[n]) <= most_bytes; n++) {
 		struct grid grid = {0};
-		double reached = 0;
+		struct deviation reached = DEVIATION_WORST;
 		status = grid_make(reflectance, SIZES[n], &grid, error);
 		if (!status)
-			status = sphere_error(reference, evaluate, &grid, &reached, error);
-		if (!status && reached > *psnr) {
-			*psnr = reached;
+			status = deviation_measure(reference, evaluate, &grid, &reached, error);
+		if (!status && reached.psnr > deviation->psnr) {
+			*deviation = reached;
 			free(out->values);
 			*out = grid;
 		} else {
 			free(grid.values);
 		}
 	}
-	sphere_reference_free(reference);
+	deviation_reference_free(reference);
 	return status;
 }
 
@@ -137,11 +137,11 @@ static void text_write(struct byte_buffer *out, const char *key, const char *tex
 }
 
 bp_status export_mbsdf(const struct reflectance *reflectance, const char *name, const struct export_options *options,
-                       struct byte_buffer *out, double *psnr, bp_error *error)
+                       struct byte_buffer *out, struct deviation *deviation, bp_error *error)
 {
 	static const char MAGIC[] = "NVIDIA ARC MBSDF V1\n", DATA[] = "MBSDF_DATA=\n";
 	struct grid grid = {0};
-	bp_status status = grid_choose(reflectance, options->most_bytes, &grid, psnr, error);
+	bp_status status = grid_choose(reflectance, options->most_bytes, &grid, deviation, error);
 	if (!status) {
 		write_bytes(out, MAGIC, sizeof MAGIC - 1);
 		text_write(out, "name", name);

@@ -3,11 +3,10 @@
 #define TOOL_EXPORT_EXPORT_MBSDF_H
 
 #include "export.h"
-#include "sphere_error.h"
 
 /* export_material and the bytes of its smallest file, of this format. */
 uint64_t export_mbsdf_least(void);
 bp_status export_mbsdf(const struct reflectance *reflectance, const char *name, const struct export_options *options,
-                       struct byte_buffer *out, double *psnr, bp_error *error);
+                       struct byte_buffer *out, struct deviation *deviation, bp_error *error);
 
 #endif
