@@ -12,6 +12,8 @@ enum { PROFILE_ANGLES = 16 };
 static const double COSINE_LEAST = 1e-4;
 /* A value beyond the horizon goes on by at most so many times the one before it. */
 static const double BEYOND_MOST = 2;
+/* Readers divide by a slice's sum: one that is darker all over is sampled evenly. */
+static const float LUMINANCE_LEAST = 1e-20f;
 /* theta_i grows with this power: closer nodes towards the horizon, where lobes change fastest. */
 static const double ANGLES_POWER = 0.8;
 
@@ -101,7 +103,7 @@ static void horizon_cross(uint32_t size, const double *factor, float *plane)
 static bool slice_fill(struct warped *warped, uint32_t angle, const struct pairs *pairs, const double *factor)
 {
 	const size_t points = (size_t)warped->shape.size * warped->shape.size;
-	float *luminance = warped->luminance + angle * points;
+	float *luminance = warped->luminance + angle * points, brightest = 0;
 	bool whole = true;
 	for (size_t n = 0; n < points; n++) {
 		double sum = 0;
@@ -112,7 +114,10 @@ static bool slice_fill(struct warped *warped, uint32_t angle, const struct pairs
 			sum += value / 3;
 		}
 		luminance[n] = (float)fmin(sum, FLT_MAX);
+		brightest = fmaxf(brightest, luminance[n]);
 	}
+	for (size_t n = 0; brightest < LUMINANCE_LEAST && n < points; n++)
+		luminance[n] = 1;
 	for (size_t c = 0; c < 3; c++)
 		horizon_cross(warped->shape.size, factor, warped->rgb + (angle * 3 + c) * points);
 	return whole;
