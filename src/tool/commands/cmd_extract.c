@@ -309,7 +309,7 @@ static int extract_main(const struct command *self, int argc, char **argv)
 const struct command command_extract = {
 	.name = "extract",
 	.run = extract_main,
-	.description = "write materials as MERL files, renderers' files, or their parameters as JSON",
+	.description = "write materials as MERL or renderers' files, or as JSON",
 	.usage = "Usage: brdfpack extract [-C DIR] [OPTION]... ARCHIVE [NAME]...\n"
 			 "Writes DIR/NAME.binary for the named materials, or for all. When a file of one of these names\n"
 			 "is there and differs, nothing is written. Cells wholly below the horizon\n"
