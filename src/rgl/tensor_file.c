@@ -16,6 +16,9 @@ static const struct {
 	[TENSOR_F16] = {"float16", 2}, [TENSOR_F32] = {"float32", 4}, [TENSOR_F64] = {"float64", 8},
 };
 
+/* Far beyond any file, and so that the sum over all fields cannot overflow. */
+#define ARRAY_BYTES_MAX (UINT64_MAX / TENSOR_FIELDS_MAX)
+
 static bool type_known(unsigned type) { return type >= TENSOR_U8 && type <= TENSOR_F64; }
 
 size_t tensor_type_bytes(enum tensor_type type) { return type_known(type) ? TYPES[type].bytes : 0; }
@@ -61,7 +64,7 @@ static bp_status extent_check(struct tensor_field *field, uint64_t at, uint64_t 
 	for (uint32_t n = 0; n < field->rank; n++) {
 		if (field->shape[n] == 0)
 			return error_set(error, BP_ERROR_BAD_INPUT, at, "field %s: dimension %" PRIu32 " of its shape is 0", field->name, n);
-		if (field->count > UINT64_MAX / size / field->shape[n])
+		if (field->count > ARRAY_BYTES_MAX / size / field->shape[n])
 			return error_set(error, BP_ERROR_BAD_INPUT, at,
 			                 "field %s: its shape overflows (dimension %" PRIu32 " is %" PRIu64 ")", field->name, n,
 			                 field->shape[n]);
@@ -115,6 +118,7 @@ bp_status tensor_table_parse(const uint8_t *bytes, size_t count, uint64_t file_b
 	if (fields > TENSOR_FIELDS_MAX)
 		return error_set(error, BP_ERROR_BAD_INPUT, TENSOR_MAGIC_BYTES + 2, "%" PRIu32 " fields; at most %d are possible", fields,
 		                 TENSOR_FIELDS_MAX);
+	uint64_t taken = 0;
 	memset(out, 0, sizeof *out);
 	for (uint32_t n = 0; n < fields; n++) {
 		bp_status status = field_parse(&in, n, file_bytes, &out->field[n], error);
@@ -122,8 +126,13 @@ bp_status tensor_table_parse(const uint8_t *bytes, size_t count, uint64_t file_b
 			return status;
 		if (tensor_field_find(out, out->field[n].name))
 			return error_set(error, BP_ERROR_BAD_INPUT, in.at, "two fields named %s", out->field[n].name);
+		taken += out->field[n].count * tensor_type_bytes(out->field[n].type);
 		out->count++;
 	}
+	if (taken > file_bytes)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+		                 "the fields' arrays take %" PRIu64 " bytes, and the file has %" PRIu64 ": they overlap", taken,
+		                 file_bytes);
 	return BP_OK;
 }
 

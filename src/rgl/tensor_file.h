@@ -67,7 +67,7 @@ const char *tensor_type_name(enum tensor_type type); /* "uint8" ... "float64" */
 /*
  * Parses the table of fields from the file's first `count` bytes, which must hold all of it; file_bytes is the whole file's
  * size, within which every array must lie (UINT64_MAX: not known yet). BP_ERROR_BAD_INPUT, naming the field and the offset, for what is cut off,
- * a version other than 1, types, ranks and names that are not known or too long, two fields of one name, and arrays that do not fit.
+ * a version other than 1, types, ranks and names that are not known or too long, two fields of one name, and arrays that do not fit or overlap.
  */
 bp_status tensor_table_parse(const uint8_t *bytes, size_t count, uint64_t file_bytes, struct tensor_table *out, bp_error *error);
 

@@ -87,7 +87,8 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 	return status;
 }
 
-static bp_status json_write(const struct record_head *head, const char *path, enum output_rule rule, bp_error *error)
+static bp_status json_write(const struct record_head *head, const struct origin *origin, const char *path, enum output_rule rule,
+                            bp_error *error)
 {
 	struct output_file file;
 	struct byte_buffer text = {0};
@@ -99,7 +100,7 @@ static bp_status json_write(const struct record_head *head, const char *path, en
 	struct json json = json_begin(memory, true);
 	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
-	facts_full(&json, head);
+	facts_full(&json, head, origin);
 	json_close(&json);
 	json_finish(&json);
 	fclose(memory);
@@ -141,8 +142,11 @@ static bp_status material_write(void *user, uint64_t n, const char *path, enum o
 		status = archive_entry_head(selection->archive, &extraction->entry, &head, error);
 	if (status)
 		return status;
-	if (extraction->form == FORM_JSON)
-		return json_write(&head, path, rule, error);
+	if (extraction->form == FORM_JSON) {
+		struct origin origin;
+		status = archive_entry_origin(selection->archive, &extraction->entry, &head, &origin, error);
+		return status ? status : json_write(&head, &origin, path, rule, error);
+	}
 	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->table,
 	                  error);
 }
