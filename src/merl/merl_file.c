@@ -35,7 +35,7 @@ static bp_status no_merl_file(struct input *in, const uint8_t head[HEADER_BYTES]
 	if (status)
 		return status;
 	if (kind)
-		return error_set(error, BP_ERROR_BAD_INPUT, 0, "not a measured file that is read: %s", kind);
+		return error_set(error, BP_ERROR_BAD_INPUT, 0, "neither a MERL file nor one of the RGL database: %s", kind);
 	return error_set(error, BP_ERROR_BAD_INPUT, 0,
 	                 "not a MERL file: expected the header 90 90 180%s, found %" PRId32 " %" PRId32 " %" PRId32,
 	                 in->how.any_dims ? " (or other legal extents)" : "", extent[0], extent[1], extent[2]);

@@ -6,11 +6,11 @@
 #include "error.h"
 #include "reciprocity.h"
 
-enum { ROW = 180 };
+enum { ROW = 180, HEADER_BYTES = 12 };
 
 bool two_halves_extents(const int32_t extent[3]) { return extent[0] == 90 && extent[1] == 90 && extent[2] == 2 * ROW; }
 
-uint64_t two_halves_bytes(void) { return 2 * merl_file_bytes(LATTICE_MERL) - merl_file_bytes((struct lattice_dims){0}); }
+uint64_t two_halves_bytes(void) { return HEADER_BYTES + 2 * 3 * sizeof(double) * (uint64_t)lattice_cells(LATTICE_MERL); }
 
 /* Rows of 360 values, of which each half takes 180. */
 static bp_status planes_split(struct input *in, struct lattice half[2], bp_error *error)
