@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The plugin for Mitsuba 3: tests/mitsuba.sh BUILD. Ends with 77, and why, where Mitsuba or the package cannot be had.
+# The plugin for Mitsuba 3, and its own evaluation of published .bsdf files (RGL) against our records of them, where BRDFPACK_RGL or a sibling
+# folder ../shared/data/rgl has some: tests/mitsuba.sh BUILD. Ends with 77, and why, where Mitsuba or the package cannot be had.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tool=$PWD/$1/brdfpack
@@ -18,6 +19,12 @@ inputs=("${names[@]/#/$scratch/all/}")
 "$tool" build -q -o "$scratch/demo.bpk" "${inputs[@]/%/.binary}"
 rm -r "$scratch/all"
 "$venv/bin/python" tests/mitsuba_plugin.py scalar_rgb "$tool" "$scratch/demo.bpk" "$scratch" "${names[@]}"
+rgl=${BRDFPACK_RGL:-../shared/data/rgl}
+if compgen -G "$rgl/*_rgb.bsdf" >/dev/null; then
+	"$venv/bin/python" tests/mitsuba_measured.py "$tool" "$rgl" "$scratch"
+else
+	echo "skipped: Mitsuba's measured against our records, as there are no files of the RGL database (BRDFPACK_RGL=FOLDER)"
+fi
 # Dr.Jit's newest versions want more of LLVM than Debian 12's own version has
 for library in /usr/lib/*/libLLVM-1[5-9].so /usr/lib/*/libLLVM-[2-9]?.so; do [ ! -e "$library" ] || export DRJIT_LIBLLVM_PATH=$library; done
 [ -n "${DRJIT_LIBLLVM_PATH:-}" ] || { echo "skip: llvm_ad_rgb, as there is no LLVM of version 15 or later (apt-get install libllvm19)"; exit 77; }

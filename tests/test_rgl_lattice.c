@@ -5,6 +5,9 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -240,6 +243,57 @@ static void an_anisotropic_file_is_refused_early(void **state)
 	made_free(&made);
 }
 
+/* Pages of this process that are mapped. */
+static size_t mapped_bytes(void)
+{
+	unsigned long pages = 0;
+	FILE *file = fopen("/proc/self/statm", "r");
+	assert_non_null(file);
+	assert_int_equal(fscanf(file, "%lu", &pages), 1);
+	fclose(file);
+	return pages * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Numbers of two bytes, which become floats: the most memory for a file's bytes. The limit is the system's own. */
+static void reading_takes_no_more_than_16_times_the_file(void **state)
+{
+	(void)state;
+#if defined __SANITIZE_ADDRESS__
+	skip(); /* the sanitizer's own memory has no such limit */
+#endif
+	enum { SIDE = 1024, LATTICE_BYTES = 48 << 20 };
+	struct made_file made = {0};
+	struct byte_buffer bytes = {0};
+	const uint64_t one[1] = {1}, vndf[4] = {1, 1, SIDE, SIDE}, spectra[5] = {1, 1, 3, SIDE, SIDE}, wavelengths[1] = {3};
+	made_material(&made);
+	made_remove(&made, "rgb");
+	made_remove(&made, "luminance");
+	made_remove(&made, "valid");
+	made_set(&made, "theta_i", TENSOR_F32, 1, one, 1.5);
+	made_set(&made, "vndf", TENSOR_F16, 4, vndf, 1);
+	made_set(&made, "spectra", TENSOR_F16, 5, spectra, 0.5);
+	struct made_field *nm = made_set(&made, "wavelengths", TENSOR_F32, 1, wavelengths, 400);
+	nm->values[1] = 500;
+	nm->values[2] = 600;
+	made_write(&made, &bytes);
+	made_free(&made);
+	const pid_t child = fork();
+	assert_true(child >= 0);
+	if (!child) {
+		const size_t most = mapped_bytes() + 16 * bytes.count + LATTICE_BYTES;
+		struct lattice lattice;
+		struct origin origin;
+		bool right =
+			setrlimit(RLIMIT_AS, &(struct rlimit){most, most}) == 0 && bytes_read(&bytes, &lattice, &origin, NULL) == BP_OK;
+		right = right && origin.kind == ORIGIN_RGL_SPECTRA && lattice.valid_count > 900000;
+		_exit(right ? 0 : 1);
+	}
+	int ended;
+	assert_int_equal(waitpid(child, &ended, 0), child);
+	assert_int_equal(ended, 0);
+	byte_buffer_free(&bytes);
+}
+
 static void foreign_files_are_called_what_they_are(void **state)
 {
 	(void)state;
@@ -339,6 +393,7 @@ int main(void)
 		cmocka_unit_test(cells_without_data_in_a_direction_are_invalid),
 		cmocka_unit_test(every_beginning_of_a_tensor_file_is_refused),
 		cmocka_unit_test(an_anisotropic_file_is_refused_early),
+		cmocka_unit_test(reading_takes_no_more_than_16_times_the_file),
 		cmocka_unit_test(foreign_files_are_called_what_they_are),
 		cmocka_unit_test(two_halves_are_joined_where_they_agree),
 		cmocka_unit_test(two_halves_that_disagree_are_refused_with_the_number),
