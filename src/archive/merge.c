@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "codec/profile_codec.h"
+#include "codec/record_origin.h"
 #include "error.h"
 #include "writer.h"
 
@@ -265,7 +266,7 @@ bp_status archive_reuse(const struct bp_archive *archive, const char *name, cons
 		return status;
 	bool same = !status && codec && head.codec_version == codec->version && head.profile == options->profile &&
 	            head.options.budget_bytes == options->budget_bytes && head.options.max_error == options->max_error &&
-	            head.options.effort == options->effort && head.source.bytes == source->bytes &&
+	            head.options.effort == options->effort && record_origin_is_current(&head) && head.source.bytes == source->bytes &&
 	            !memcmp(head.source.sha256, source->sha256, SHA256_BYTES);
 	if (!same)
 		return BP_OK;

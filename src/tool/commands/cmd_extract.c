@@ -144,7 +144,8 @@ static bp_status export_write(const struct selection *selection, const struct in
 	return status;
 }
 
-static bp_status json_write(const struct record_head *head, const char *path, enum output_rule rule, bp_error *error)
+static bp_status json_write(const struct record_head *head, const struct origin *origin, const char *path, enum output_rule rule,
+                            bp_error *error)
 {
 	struct byte_buffer text = {0};
 	bp_status status;
@@ -155,7 +156,7 @@ static bp_status json_write(const struct record_head *head, const char *path, en
 	struct json json = json_begin(memory, true);
 	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
-	facts_full(&json, head);
+	facts_full(&json, head, origin);
 	json_close(&json);
 	json_finish(&json);
 	fclose(memory);
@@ -191,8 +192,11 @@ static bp_status material_write(void *user, uint64_t n, const char *path, enum o
 		status = archive_entry_head(selection->archive, &extraction->entry, &head, error);
 	if (status)
 		return status;
-	if (extraction->form == FORM_JSON)
-		return json_write(&head, path, rule, error);
+	if (extraction->form == FORM_JSON) {
+		struct origin origin;
+		status = archive_entry_origin(selection->archive, &extraction->entry, &head, &origin, error);
+		return status ? status : json_write(&head, &origin, path, rule, error);
+	}
 	status = lattice_size_check(&head, extraction->table.any_lattice, error);
 	if (status)
 		return status;
