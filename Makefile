@@ -30,9 +30,10 @@ SONAME   := libbrdfpack.so.$(firstword $(subst ., ,$(VERSION)))
 SHARED   := libbrdfpack.so.$(VERSION)
 
 # The library: everything a renderer links. The tool adds sources (libarchive), images and the command line.
-TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c source_names.c source_read.c container.c container_fault.c sha256.c demo.c demo_speckle.c \
+TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c source_names.c source_read.c container.c container_fault.c licence.c sha256.c \
+	demo.c demo_speckle.c \
 	normal_form.c spelling.c) src/memory_stream.c
-LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/merl/*.c src/model/*.c src/model/*/*.c src/codec/*.c src/codec/*/*.c src/archive/*.c))
+LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/rgl/*.c src/merl/*.c src/model/*.c src/model/*/*.c src/codec/*.c src/codec/*/*.c src/archive/*.c))
 TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c src/tool/*/*.c)
 # The half that only reads: what is left of these sources when the linker drops what no function of it calls.
 WRITER_C     := $(addprefix src/,output_file.c output_file_sweep.c output_path.c merl/merl_file.c merl/carried.c merl/holes.c) \

@@ -184,6 +184,19 @@ class Record:
         demand(zlib.crc32(data) == entry[8], "checksum", self.base + entry[6], f"section of type {entry[0]}")
         return data
 
+    def origin(self):
+        """What the source was, or None: the optional section of type 32 (chapter 5, Origin)."""
+        for entry in self.sections:
+            if entry[:3] != (32, 0, 1) or entry[7] != 28:
+                continue
+            kind, observer, illuminant, primaries, count, first, last, cells, median, most = struct.unpack("<BBBBIffIff", self.section(entry))
+            at = self.base + entry[6]
+            demand(kind in ORIGINS, "corrupt", at, f"origin of kind {kind}")
+            demand(0 <= first <= last < 1e6 and 0 <= median <= 2 and 0 <= most <= 2, "corrupt", at + 8, "origin's figures")
+            spectra = f", {count} wavelengths from {first:g} to {last:g} nm" if kind == 2 else ""
+            return f"{ORIGINS[kind]}{spectra}; directions differed by {100 * median:.1f} % (median), {100 * most:.1f} % (95th percentile)"
+        return None
+
     def load(self, layers, known):
         """{type: bytes} of the sections of layers 0..layers-1 whose (type, codec, version) is known, each type once."""
         return {entry[0]: data for entry, data in self.load_list(layers, known, True)}
@@ -206,6 +219,9 @@ class Record:
         layers = min(layers or len(self.layers), len(self.layers))
         demand(self.profile in DECODERS, "unsupported", self.base + 18, f"profile {self.profile}")
         return DECODERS[self.profile](self, layers)
+
+
+ORIGINS = {1: "RGL tensor file, RGB", 2: "RGL tensor file, spectra", 3: "MERL-like table, mean of two halves"}
 
 
 # ---- 7: range coder ----
@@ -750,7 +766,8 @@ def command_list(archive):
     for entry in archive.walk():
         record = archive.record(entry)
         print(f"{record.name}  {record.bytes} bytes  profile {record.profile}  {'x'.join(map(str, record.dims))}  "
-              f"{len(record.layers)} layers  log RMSE {record.layers[-1][2]:.6g}  {len(record.sections)} sections")
+              f"{len(record.layers)} layers  log RMSE {record.layers[-1][2]:.6g}  {len(record.sections)} sections"
+              + (f"  from: {record.origin()}" if record.origin() else ""))
 
 
 def command_verify(archive):
@@ -758,6 +775,7 @@ def command_verify(archive):
         record = archive.record(entry)
         for section in record.sections:
             record.section(section)
+        record.origin()
         for layers in range(1, len(record.layers) + 1):
             for channel in record.decode(layers):
                 demand(all(0 <= x < math.inf for x in channel), "corrupt", record.base, "a value is negative or not finite")

@@ -10,7 +10,7 @@
 #     install   installs into a scratch folder; symbols; a consumer built through pkg-config
 #     python    the independent Python reader against the C library
 #     package   the Python package in a clean virtual environment (skipped where pip reaches no index)
-#     mitsuba   the plugin for Mitsuba 3, which pip fetches (when named; skipped where pip cannot)
+#     mitsuba   Mitsuba 3, which pip fetches: the plugin, and exported files in its own `measured` (when named; skipped where pip cannot)
 #     debian    Debian packages of the tree, and lintian (when named)
 #     asan      unit and command-line tests with AddressSanitizer and UBSan
 #     clang     builds everything by clang with warnings as errors; and the libraries by both with -flto
@@ -167,7 +167,7 @@ job_portable() {
 job_mitsuba() {
 	build test || return
 	scripts/setup.sh mitsuba >"$logs/setup-mitsuba.log" 2>&1 || true
-	check "the plugin for Mitsuba 3" "$logs/mitsuba.log" tests/mitsuba.sh build/test
+	check "Mitsuba 3" "$logs/mitsuba.log" tests/mitsuba.sh build/test
 }
 job_debian() {
 	scripts/setup.sh debian >"$logs/setup-debian.log" 2>&1 || true

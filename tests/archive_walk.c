@@ -68,10 +68,13 @@ static void heads_list(const bp_archive *archive, uint64_t first, uint64_t most)
 			continue;
 		if ((m + count - first % count) % count >= most)
 			continue;
+		struct origin origin;
+		if (archive_entry_origin(archive, &entry, &head, &origin, NULL) != BP_OK)
+			continue;
 		struct json json = json_begin(nowhere, true);
 		json_object(&json, NULL);
 		json_string(&json, "name", head.name);
-		facts_full(&json, &head);
+		facts_full(&json, &head, &origin);
 		json_close(&json);
 		json_finish(&json);
 	}

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Coverage-guided fuzzing: tests/fuzz.sh BUILD SECONDS CORPUS TARGET... BUILD holds the fuzz_TARGETs (libFuzzer).
-# Seeds are made here: the test vectors, their records, small MERL files, some with such a record in them, tars and zips of them, the
-# manifests, command lines, scenes. What a run finds that reaches new code is added to CORPUS/TARGET, from where the next run goes on.
+# Seeds are made here: the test vectors, their records, small MERL files, some with such a record in them, tars and zips of them, tensor
+# files, the manifests, command lines, scenes. What a run finds that reaches new code is added to CORPUS/TARGET, from where the next run goes on.
 set -euo pipefail
 build=$1 seconds=$2 grown=$3
 shift 3
 here=$(cd "$(dirname "$0")" && pwd)
 corpus=$build/seeds
-rm -rf "$corpus" && mkdir -p "$corpus"/{archive,record,merl,manifest,options,scene,container}
+rm -rf "$corpus" && mkdir -p "$corpus"/{archive,record,merl,manifest,options,scene,container,tensor}
 cp "$here"/../format-spec/vectors/*.bpk "$corpus/archive"
 python3 - "$corpus" <<'END'
 import bz2, glob, gzip, io, lzma, math, os, struct, sys, tarfile, zipfile
@@ -76,6 +76,7 @@ packed = {"tar": tar, "joined.tar": tar_of(members[:1]) + tar_of(odd[3:]), "tar.
 for name, content in packed.items():
     open("%s/container/%s" % (corpus, name), "wb").write(content)
 END
+"$here/tensor_files.py" "$corpus/tensor"
 for file in "$here"/../manifests/*; do head -c 4000 "$file" >"$corpus/manifest/$(basename "$file")"; done
 failed=0
 for target in "$@"; do

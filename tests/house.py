@@ -12,14 +12,14 @@ import sys
 
 # From the bottom up. A file may include headers of its own wing and of wings with a lower number.
 RANK = {
-    "": 0, "merl": 1, "model/math": 2, "model/robust": 3, "model/paper": 4, "model/spectral": 4, "model": 5, "model/table": 6, "model/sample": 7,
-    "codec": 8, "codec/paper": 9, "codec/spectral": 9, "archive": 10, "render": 10, "tool": 12, "tool/build": 13, "tool/compare": 13, "tool/report_page": 13,
+    "": 0, "rgl": 0.5, "merl": 1, "model/math": 2, "model/robust": 3, "model/paper": 4, "model/spectral": 4, "model": 5, "model/table": 6, "model/sample": 7,
+    "codec": 8, "codec/paper": 9, "codec/spectral": 9, "archive": 10, "render": 10, "tool": 12, "tool/build": 13, "tool/compare": 13, "tool/report_page": 13, "tool/export": 13,
     "tool/commands": 14, "bench": 15, "python": 15, "viewer": 16,
 }
 # The header by which neighbours enter a wing. What is not here is a set of tools, each header for itself.
 DOOR = {
     "model/robust": "robust.h", "model/paper": "paper.h", "model/spectral": "spectral.h", "model/table": "table.h", "model/sample": "sample.h",
-    "tool/build": "build.h", "tool/compare": "compare.h", "tool/report_page": "page.h",
+    "tool/build": "build.h", "tool/compare": "compare.h", "tool/report_page": "page.h", "tool/export": "export.h",
 }
 LOW = {"model/fit.h": 1.5}  # told to every wing of the model, so below them all; above what was measured
 # Lists of what many files define under one kind of name.

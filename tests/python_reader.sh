@@ -44,6 +44,10 @@ for values in "$vectors"/*.values; do
 	python3 "$reader" compare "${values%.values}.bpk" "$values" || fail "$values"
 done
 
+count=$((count + 1))
+python3 "$reader" list "$vectors/good-origin.bpk" | grep -q "from: RGL tensor file, spectra, 195 wavelengths from 360 to 1000 nm; directions differed by 1.6 % (median), 12.5 %" ||
+	fail "good-origin.bpk: what its source was"
+
 "$build/tests/test_record_encode" --write "$folder"
 for values in "$folder"/*.values; do
 	count=$((count + 1))

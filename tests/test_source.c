@@ -356,7 +356,7 @@ static void members_of_zip_and_plain_tar_are_items_that_can_be_read_in_any_order
 		bp_error error;
 		for (int n = 0; n < 3; n++) {
 			assert_int_equal(source_item_read(&list.items[n], &cursor, NULL, &lattice, &error), BP_ERROR_BAD_INPUT);
-			expect_words(error.message, "not a MERL file");
+			expect_words(error.message, "neither a MERL file nor one of the RGL database: text");
 		}
 		source_cursor_close(&cursor);
 		source_list_free(&list);

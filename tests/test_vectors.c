@@ -95,6 +95,8 @@ static const struct vector VECTORS[] = {
 	{"good-spectral-bright", BP_OK, "The spectral profile, values around 1e300.", make_spectral_bright},
 	{"good-spectral-dark", BP_OK, "The spectral profile, values around 1e-300.", make_spectral_dark},
 	{"good-spectral-zero", BP_OK, "The spectral profile, every value 0: no plane at all.", make_spectral_zero},
+	{"good-origin", BP_OK, "The spectral profile, 4x4x4, and a section that tells of its source: spectra of an RGL tensor file.",
+     make_origin},
 	{"unsupported-major", BP_ERROR_UNSUPPORTED, "Major version 2.", make_major},
 	{"unsupported-flags", BP_ERROR_UNSUPPORTED, "A required flag in the archive's header.", make_flags},
 	{"unsupported-record-version", BP_ERROR_UNSUPPORTED, "A record of version 1.", make_record_version},
@@ -145,6 +147,7 @@ static const struct vector VECTORS[] = {
 	{"bad-spectral-unit-least", BP_ERROR_CORRUPT, "A unit below 2^-1022.", make_spectral_unit_least},
 	{"bad-spectral-end", BP_ERROR_CORRUPT, "More units than there are planes, fields and harmonics.", make_spectral_end},
 	{"bad-spectral-early", BP_ERROR_CORRUPT, "A stream of planes that is longer than its units.", make_spectral_early},
+	{"bad-origin", BP_ERROR_CORRUPT, "A source of a kind that is not known.", make_origin_kind},
 };
 enum { VECTOR_COUNT = sizeof VECTORS / sizeof *VECTORS };
 

@@ -63,7 +63,7 @@ FUZZ_SECONDS ?= 60
 FUZZ_BUILD   := $(BUILD)/fuzz
 # what earlier runs found and later ones begin with; `make clean` takes it along unless it is elsewhere
 FUZZ_CORPUS  ?= $(FUZZ_BUILD)/corpus
-FUZZ_TARGETS ?= archive record merl manifest options scene container
+FUZZ_TARGETS ?= archive record merl manifest options scene container tensor
 ifeq ($(SANITIZE),fuzzer-no-link,address,undefined)
 $(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz_%.o $(BUILD)/tests/archive_walk.o $(BUILD)/internal.a $(filter-out $(BUILD)/src/tool/main.o,$(TOOL_O))
 	$(call SAY,LD    $@)

@@ -5,6 +5,7 @@
 #ifndef TESTS_VECTORS_DEFAULT_H
 #define TESTS_VECTORS_DEFAULT_H
 
+#include "codec/record_origin.h"
 #include "vectors.h"
 
 FIXTURE void vector_lattice(struct lattice_dims d, double scale, struct lattice *out)
@@ -84,6 +85,27 @@ static void make_spectral_layers(const char *path)
 	assert_int_equal(head.layer_count, 2);
 	vector_spectral_write(path, &head, &sections);
 }
+
+/* A record that tells of a source by wavelength; `kind`: what its section says of it. */
+FIXTURE void vector_origin(const char *path, uint8_t kind)
+{
+	const struct origin origin = {.kind = ORIGIN_RGL_SPECTRA,
+	                              .wavelengths = 195,
+	                              .first_nm = 360,
+	                              .last_nm = 1000,
+	                              .compared = 1000000,
+	                              .median = 0.015625,
+	                              .percentile95 = 0.125};
+	struct record_head head;
+	struct section_list sections;
+	vector_spectral_encode("material", (struct lattice_dims){4, 4, 4}, 1, 60400, &head, &sections);
+	assert_true(record_origin_add(&sections, &origin));
+	sections.bytes[0].bytes[0] = kind;
+	vector_spectral_write(path, &head, &sections);
+}
+
+static void make_origin(const char *path) { vector_origin(path, ORIGIN_RGL_SPECTRA); }
+static void make_origin_kind(const char *path) { vector_origin(path, 4); }
 
 /* One number of a section changed, under a checksum that holds. */
 FIXTURE void vector_spectral_changed(const char *path, int section, size_t at, uint32_t value)

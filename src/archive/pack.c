@@ -111,7 +111,7 @@ static bp_status carried_take(const bp_measured *measured, size_t cells, struct 
 	struct carried_reader reader = {.values = CHANNELS * cells};
 	if (measured->number != BP_NUMBER_DOUBLE || measured->layout != BP_LAYOUT_PLANES || measured->mask)
 		return BP_OK;
-	const bool found = carried_find(&reader, measured->values, reader.values);
+	const bool found = carried_read(&reader, measured->values, reader.values);
 	if (found && reader.whole)
 		*carried = (struct carried){reader.bytes, reader.count};
 	else

@@ -35,6 +35,13 @@ bp_status archive_entry_head(const struct bp_archive *archive, const struct inde
 bp_status archive_entry_record(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
                                uint8_t **record, bp_error *error);
 
+/*
+ * What kind of file the material was read from, from the section that says so (codec/record_origin.h); ORIGIN_MERL where there is none
+ * that this program understands.
+ */
+bp_status archive_entry_origin(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                               struct origin *out, bp_error *error);
+
 /* Reads and checks the head of material `index` (0..count-1, in name order). */
 bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct record_head *head, bp_error *error);
 

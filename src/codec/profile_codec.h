@@ -10,7 +10,7 @@
 /* What an encoder may spend. */
 struct encode_request {
 	const struct fit_options *options;
-	size_t name_bytes;         /* for record_head_size */
+	size_t name_bytes; /* for record_head_size: of the name, and of what stands in the record beside the profile's own sections */
 	uint32_t record_bytes_max; /* head included */
 };
 

@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "profile_codec.h"
+#include "record_origin.h"
 
 uint32_t record_layers_for(const struct record_head *head, double max_log_rmse)
 {
@@ -35,8 +36,8 @@ bool record_answers(const struct record_head *head, const struct record_source *
 	return codec && head->codec_version == codec->version && head->profile == options->profile &&
 	       head->options.budget_bytes == options->budget_bytes && head->options.max_error == options->max_error &&
 	       head->options.effort == options->effort && head->options.zeros == options->zeros &&
-	       head->source.hole_count == source->hole_count && head->source.bytes == source->bytes &&
-	       !memcmp(head->source.sha256, source->sha256, SHA256_BYTES);
+	       head->source.hole_count == source->hole_count && record_origin_is_current(head) &&
+	       head->source.bytes == source->bytes && !memcmp(head->source.sha256, source->sha256, SHA256_BYTES);
 }
 
 static bool kind_among(const struct section_kind *kinds, uint32_t count, const struct record_section *entry)

@@ -7,6 +7,7 @@
 #ifndef CODEC_RECORD_H
 #define CODEC_RECORD_H
 
+#include "merl/origin.h"
 #include "model/fidelity.h"
 #include "model/model.h"
 
@@ -27,7 +28,7 @@ enum { RECORD_MAGIC_BYTES = 8, RECORD_VERSION = 2 };
 /* In place of a codec version: no encoder made this record as it is, so no rebuild takes it for what it would make. */
 enum { RECORD_LAYERS_DROPPED = 0 };
 
-/* Types of section; 1..15 belong to the paper's profile, 16..31 to the spectral one. */
+/* Types of section; 1..15 belong to the paper's profile, 16..31 to the spectral one, from 32 on to none. */
 enum section_type {
 	SECTION_MARGINALS = 1, /* scale and the three marginals of channel R */
 	SECTION_PAIR_HD = 2,   /* c_hd */
@@ -35,7 +36,8 @@ enum section_type {
 	SECTION_SLICES = 4,    /* c_dphi|h */
 	SECTION_CHANNEL = 4,   /* G's types are this much higher, B's twice as much */
 	SECTION_FIELDS = 16,   /* what makes fields of levels, and a table of fields */
-	SECTION_PLANES = 17    /* bit planes of the levels, one section to a layer */
+	SECTION_PLANES = 17,   /* bit planes of the levels, one section to a layer */
+	SECTION_ORIGIN = 32    /* what kind of file the source was (record_origin.h); optional, in any profile */
 };
 
 enum section_flag {
@@ -53,6 +55,7 @@ struct record_source {
 	uint8_t sha256[SHA256_BYTES];
 	uint64_t nonfinite_count; /* cells refused as NaN or infinite */
 	uint32_t hole_count;      /* cells taken as not measured for the value they hold (merl/holes.h) */
+	struct origin origin;     /* for the encoder; a head does not tell it (record_origin.h) */
 };
 
 struct record_layer {

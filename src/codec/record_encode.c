@@ -10,6 +10,7 @@
 #include "name.h"
 #include "profile_codec.h"
 #include "record_measure.h"
+#include "record_origin.h"
 
 static void head_fill(struct record_head *head, const struct model *model, const char *name, const struct record_source *source,
                       const struct fit_options *options, uint32_t codec_version)
@@ -59,6 +60,10 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 	                                  &decoded, error);
 	if (status)
 		goto out;
+	if (!record_origin_add(&sections, &packing->head.source.origin)) {
+		status = error_memory(error, ORIGIN_BYTES);
+		goto out;
+	}
 	status = record_measure(&packed.head, &sections, packing->lattice, decoded, request.options->watch, &packed.record,
 	                        &packed.bytes, error);
 	if (!status && packed.bytes > record_bytes_max) {
@@ -168,7 +173,8 @@ bp_status record_encode(const struct lattice *lattice, const char *name, const s
 	if (status)
 		return status;
 	packing.model = model;
-	packing.request = (struct encode_request){.options = options, .name_bytes = name_bytes};
+	packing.request =
+		(struct encode_request){.options = options, .name_bytes = name_bytes + record_origin_bytes(&source->origin)};
 	head_fill(&packing.head, model, name, source, options, profile_codec_find(options->profile)->version);
 	if (options->max_error > 0)
 		status = record_search(&packing, options->max_error, &packed, error);

@@ -29,6 +29,7 @@ struct container {
 	bool finished;
 	unsigned failures; /* entries that could not be read; a limit keeps hostile files from going on for ever */
 	size_t members, ignored;
+	struct licences licences; /* among the ignored */
 	const char *remark;
 	char fault[512]; /* of the current member */
 	locale_t locale;
@@ -212,6 +213,8 @@ static bool entry_counts(struct container *container)
 	const bool counts = !folder && (!container->path[0] || source_kind_by_name(container->path) != SOURCE_KIND_OTHER);
 	container->members += counts;
 	container->ignored += !counts && !folder;
+	if (!counts && !folder)
+		licences_note(&container->licences, container->path, NULL);
 	return counts;
 }
 
@@ -227,7 +230,7 @@ static const char *entry_fault(struct container *container)
 		return "its name cannot be read in this character set; name another with --charset";
 	if (archive_entry_is_data_encrypted(entry) || archive_entry_is_metadata_encrypted(entry))
 		return "encrypted; unpack it with its password first";
-	if (source_kind_by_name(container->path) != SOURCE_KIND_MERL)
+	if (source_kind_by_name(container->path) != SOURCE_KIND_MEASURED)
 		return container->raw_name ? "what is compressed in it is no tar"
 		                           : "a container within a container, which is not read; unpack the outer one first";
 	if (container->raw_name)
@@ -306,6 +309,8 @@ bp_status container_read(void *user, void *bytes, size_t capacity, size_t *read,
 
 size_t container_ignored(const struct container *container) { return container->ignored; }
 
+const struct licences *container_licences(const struct container *container) { return &container->licences; }
+
 void container_close(struct container *container)
 {
 	if (!container)
@@ -316,6 +321,7 @@ void container_close(struct container *container)
 		close(container->fd);
 	if (container->locale)
 		freelocale(container->locale);
+	licences_free(&container->licences);
 	free(container->raw_name);
 	free(container->path);
 	free(container);

@@ -1,8 +1,8 @@
 /*
- * container.h: MERL files inside a tar or zip, plain or compressed, read through libarchive
+ * container.h: measured files inside a tar or zip, plain or compressed, read through libarchive
  * without unpacking. Part of the tool, not of the library.
  *
- * Members that count are named *.binary (in either case), or like a container, and not hidden ("._x.binary" is
+ * Members that count are named *.binary or *.bsdf (in either case), or like a container, and not hidden ("._x.binary" is
  * no table); others are passed over and counted. Of these, what is no file with bytes of its own (a link, a device), encrypted, or
  * a container itself has a fault. Tars that were joined, one behind the other, are read as one. A single compressed MERL file (x.binary.gz) is a
  * container of one member. Messages name the member but not the container: the caller puts that in front.
@@ -12,6 +12,7 @@
 
 #include <stdbool.h>
 
+#include "licence.h"
 #include "merl_file.h"
 
 struct container;
@@ -62,8 +63,9 @@ bp_status container_read(void *container, void *bytes, size_t capacity, size_t *
 /* Members that counted so far. */
 size_t container_members(const struct container *container);
 
-/* Members passed over so far because they are no MERL files (folders do not count). */
+/* Members passed over so far because they are no measured files (folders do not count), and the texts of licences among them. */
 size_t container_ignored(const struct container *container);
+const struct licences *container_licences(const struct container *container);
 
 void container_close(struct container *container); /* NULL is allowed */
 

@@ -10,7 +10,11 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "foreign.h"
+#include "input.h"
 #include "output_file.h"
+#include "rgl_file.h"
+#include "two_halves.h"
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "the writing half of brdfpack is for little-endian machines: it takes MERL files as they lie in memory");
@@ -19,57 +23,20 @@ enum { HEADER_BYTES = 12, CHUNK_VALUES = 1 << 15 }; /* 256 KB: read, hashed and 
 
 uint64_t merl_file_bytes(struct lattice_dims dims) { return HEADER_BYTES + 3 * sizeof(double) * (uint64_t)lattice_cells(dims); }
 
-/* Where the bytes come from and who looks on. */
-struct input {
-	merl_read_fn *read;
-	void *user;
-	struct merl_reading how;
-	uint64_t done;
-};
-
-/* Reads `count` bytes, or fewer at the end of the stream: *got says how many. */
-static bp_status input_fill(struct input *in, void *bytes, size_t count, size_t *got, bp_error *error)
+/* What a file of another kind is told; `head`: what was read of it. */
+static bp_status no_merl_file(struct input *in, const uint8_t head[HEADER_BYTES], bp_error *error)
 {
-	char *next = bytes;
-	size_t filled = 0;
-	while (filled < count) {
-		size_t once = 0;
-		bp_status status = in->read(in->user, next + filled, count - filled, &once, error);
-		if (status != BP_OK)
-			return status;
-		if (!once)
-			break;
-		filled += once;
-	}
-	if (in->how.seen && filled)
-		in->how.seen(in->how.seen_user, bytes, filled);
-	in->done += filled;
-	*got = filled;
-	return BP_OK;
-}
-
-static bp_status truncated(uint64_t expected, uint64_t found, bp_error *error)
-{
-	return error_set(error, BP_ERROR_BAD_INPUT, found, "truncated: expected %" PRIu64 " bytes, found %" PRIu64, expected, found);
-}
-
-static bp_status header_read(struct input *in, struct lattice_dims *dims, bp_error *error)
-{
+	uint8_t more[FOREIGN_HEAD_BYTES];
 	int32_t extent[3];
-	size_t got;
-	bp_status status = input_fill(in, extent, sizeof extent, &got, error);
-	if (status != BP_OK)
+	size_t got = 0;
+	memcpy(more, head, HEADER_BYTES);
+	memcpy(extent, head, sizeof extent);
+	bp_status status = input_fill(in, more + HEADER_BYTES, sizeof more - HEADER_BYTES, &got, error);
+	const char *kind = status ? NULL : foreign_kind(more, HEADER_BYTES + got);
+	if (status)
 		return status;
-	if (!got)
-		return error_set(error, BP_ERROR_BAD_INPUT, 0, "empty: expected a MERL file of %" PRIu64 " bytes",
-		                 merl_file_bytes(LATTICE_MERL));
-	if (got < sizeof extent)
-		return truncated(merl_file_bytes(LATTICE_MERL), got, error);
-	*dims =
-		(struct lattice_dims){(uint32_t)extent[0], (uint32_t)extent[1], (uint32_t)extent[2]}; /* a negative one is too large */
-	const bool merl = extent[0] == 90 && extent[1] == 90 && extent[2] == 180;
-	if (merl || (in->how.any_dims && lattice_dims_legal(*dims)))
-		return BP_OK;
+	if (kind)
+		return error_set(error, BP_ERROR_BAD_INPUT, 0, "neither a MERL file nor one of the RGL database: %s", kind);
 	return error_set(error, BP_ERROR_BAD_INPUT, 0,
 	                 "not a MERL file: expected the header 90 90 180%s, found %" PRId32 " %" PRId32 " %" PRId32,
 	                 in->how.any_dims ? " (or other legal extents)" : "", extent[0], extent[1], extent[2]);
@@ -90,68 +57,111 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, struct c
 			if (status != BP_OK)
 				return status;
 			if (got < count * sizeof *values)
-				return truncated(expected, in->done, error);
+				return input_truncated(expected, in->done, error);
 			if (in->how.carried && !carried_read(carried, values, count))
 				return error_memory(error, carried->count);
 			lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start);
 		}
-	char extra;
-	status = in->read(in->user, &extra, 1, &got, error);
+	status = input_end(in, error);
 	if (status != BP_OK)
 		return status;
-	if (got)
-		return error_set(error, BP_ERROR_BAD_INPUT, expected,
-		                 "trailing bytes: expected the end after %" PRIu64 " bytes, found more", expected);
 	lattice_scan_finish(lattice);
-	if (!lattice->valid_count)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "no valid cell: each of the %zu is negative, NaN or infinite in some channel", cells);
 	return BP_OK;
 }
 
-static struct input input_over(merl_read_fn *read, void *user, const struct merl_reading *reading)
+/* A size that cannot be right is told before 35 MB are read in vain. */
+static bp_status size_check(const struct input *in, uint64_t expected, bp_error *error)
 {
-	return (struct input){.read = read, .user = user, .how = reading ? *reading : (struct merl_reading){0}};
+	if (in->available < expected)
+		return input_truncated(expected, in->available, error);
+	if (in->available > expected && in->available != UINT64_MAX)
+		return error_set(error, BP_ERROR_BAD_INPUT, expected, "trailing bytes: expected %" PRIu64 " bytes, found %" PRIu64,
+		                 expected, in->available);
+	return BP_OK;
 }
 
-/* `available`: the bytes that are there, where that is known; a size that cannot be right is told before 35 MB are read in vain. */
-static bp_status input_read(struct input *in, uint64_t available, struct lattice *out, bp_error *error)
+/* A MERL file behind its header. */
+static bp_status table_read(struct input *in, struct lattice_dims dims, struct lattice *out, bp_error *error)
 {
-	struct carried_reader carried = {0};
-	struct lattice lattice = {0};
-	struct lattice_dims dims;
-	bp_status status = header_read(in, &dims, error);
+	struct carried_reader carried = {.values = 3 * lattice_cells(dims)};
+	bp_status status = size_check(in, merl_file_bytes(dims), error);
+	if (status == BP_OK)
+		status = lattice_alloc(dims, out, error);
 	if (status != BP_OK)
 		return status;
-	const uint64_t expected = merl_file_bytes(dims);
-	if (available < expected)
-		return truncated(expected, available, error);
-	if (available > expected && available != UINT64_MAX)
-		return error_set(error, BP_ERROR_BAD_INPUT, expected, "trailing bytes: expected %" PRIu64 " bytes, found %" PRIu64,
-		                 expected, available);
-	status = lattice_alloc(dims, &lattice, error);
-	if (status != BP_OK)
-		return status;
-	carried.values = 3 * lattice_cells(dims);
-	status = planes_read(in, &lattice, &carried, error);
+	status = planes_read(in, out, &carried, error);
 	if (status != BP_OK || !carried.whole) {
 		free(carried.bytes);
 		carried.bytes = NULL;
 	}
-	if (status != BP_OK) {
-		lattice_free(&lattice);
-		return status;
-	}
 	if (in->how.carried)
 		*in->how.carried = (struct carried){.bytes = carried.bytes, .count = carried.bytes ? carried.count : 0};
+	if (status != BP_OK)
+		lattice_free(out);
+	return status;
+}
+
+/* By the first twelve bytes: a tensor file's magic, or a table's extents. */
+static bp_status kind_read(struct input *in, struct lattice *out, struct origin *origin, bp_error *error)
+{
+	uint8_t head[HEADER_BYTES];
+	int32_t extent[3];
+	size_t got;
+	bp_status status = input_fill(in, head, sizeof head, &got, error);
+	if (status != BP_OK)
+		return status;
+	if (!got)
+		return error_set(error, BP_ERROR_BAD_INPUT, 0, "empty: expected a MERL file of %" PRIu64 " bytes",
+		                 merl_file_bytes(LATTICE_MERL));
+	if (got < sizeof head)
+		return input_truncated(merl_file_bytes(LATTICE_MERL), got, error);
+	if (memcmp(head, TENSOR_MAGIC, sizeof head) == 0)
+		return rgl_file_read(in, head, out, origin, error);
+	memcpy(extent, head, sizeof extent);
+	if (two_halves_extents(extent)) {
+		status = size_check(in, two_halves_bytes(), error);
+		return status ? status : two_halves_read(in, out, origin, error);
+	}
+	const struct lattice_dims dims = {(uint32_t)extent[0], (uint32_t)extent[1],
+	                                  (uint32_t)extent[2]}; /* a negative one is too large */
+	const bool merl = extent[0] == 90 && extent[1] == 90 && extent[2] == 180;
+	if (merl || (in->how.any_dims && lattice_dims_legal(dims)))
+		return table_read(in, dims, out, error);
+	return no_merl_file(in, head, error);
+}
+
+static bp_status input_read(merl_read_fn *read, void *user, uint64_t available, const struct merl_reading *reading,
+                            struct lattice *out, bp_error *error)
+{
+	struct input in = {.read = read, .user = user, .how = reading ? *reading : (struct merl_reading){0}, .available = available};
+	struct origin origin = {.kind = ORIGIN_MERL};
+	struct lattice lattice = {0};
+	struct carried carried = {0};
+	if (in.how.carried)
+		in.how.carried = &carried;
+	bp_status status = kind_read(&in, &lattice, &origin, error);
+	if (status == BP_OK && !lattice.valid_count)
+		status = error_set(
+			error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: each of the %zu is %s", lattice_cells(lattice.dims),
+			origin.kind == ORIGIN_MERL ? "negative, NaN or infinite in some channel" : "without data in some direction");
+	if (status != BP_OK) {
+		lattice_free(&lattice);
+		free(carried.bytes);
+		return status;
+	}
+	if (in.how.carried)
+		*reading->carried = carried;
+	if (in.how.origin)
+		*in.how.origin = origin;
+	if (in.how.file_bytes)
+		*in.how.file_bytes = in.done;
 	*out = lattice;
 	return BP_OK;
 }
 
 bp_status lattice_read(merl_read_fn *read, void *user, const struct merl_reading *reading, struct lattice *out, bp_error *error)
 {
-	struct input in = input_over(read, user, reading);
-	return input_read(&in, UINT64_MAX, out, error);
+	return input_read(read, user, UINT64_MAX, reading, out, error);
 }
 
 /* merl_read_fn over a file descriptor */
@@ -184,8 +194,7 @@ bp_status lattice_read_path(const char *path, const struct merl_reading *reading
 		                   S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
 		goto out;
 	}
-	struct input in = input_over(descriptor_read, &fd, reading);
-	status = input_read(&in, (uint64_t)about.st_size, out, error);
+	status = input_read(descriptor_read, &fd, (uint64_t)about.st_size, reading, out, error);
 out:
 	if (fd >= 0)
 		close(fd);

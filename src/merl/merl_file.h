@@ -7,6 +7,7 @@
 
 #include "carried.h"
 #include "lattice.h"
+#include "origin.h"
 #include "output_file.h"
 
 /* Bytes of a file with these extents: 12 + 24 * cells. MERL: 34,992,012. */
@@ -24,12 +25,19 @@ struct merl_reading {
 	bool any_dims; /* accept any legal extents */
 	struct carried *
 		carried; /* NULL, or where to put what the file carries (carried.h), unchecked; set on success, the caller frees its bytes */
+	struct origin *origin; /* NULL, or where to say what kind of file it was; set on success */
+	uint64_t *file_bytes;  /* NULL, or where to put the file's size; set on success */
 };
 
 /*
- * Reads one MERL file from a stream to its end. Refuses (BP_ERROR_BAD_INPUT, with expected and found):
- * a header other than `90 90 180` (any legal extents when any_dims), a short stream, trailing bytes,
- * no valid cell at all. The error's offset is where the file ends or should. On success the caller owns *out.
+ * Reads one measured file from a stream to its end. Its first twelve bytes say what it is, whatever it is called:
+ *
+ * - a MERL file, header `90 90 180` (any legal extents when any_dims, but for the next kind's);
+ * - a MERL-like one of `90 90 360`, whose two halves of phi_d have to agree (two_halves.h);
+ * - a tensor file of the RGL database, evaluated on MERL's lattice (rgl_file.h, rgl_lattice.h).
+ *
+ * Refuses (BP_ERROR_BAD_INPUT, with expected and found, or what the file is instead) any other, a short stream, trailing bytes
+ * of a table, no valid cell at all. The error's offset is where the file ends or should, or where it is wrong. On success the caller owns *out.
  */
 bp_status lattice_read(merl_read_fn *read, void *user, const struct merl_reading *reading, struct lattice *out, bp_error *error);
 /*

@@ -129,6 +129,7 @@ static bp_status container_add(struct source_list *list, const char *path, bool 
 	if (container_remark(container) && status == BP_OK)
 		notice(list, SOURCE_DAMAGED, path, container_remark(container));
 	list->ignored_count += container_ignored(container);
+	source_licences_take(list, path, container);
 	container_close(container);
 	return status;
 }
@@ -213,7 +214,7 @@ static bp_status thing_add(struct source_list *list, const char *path, bool name
 		list->ignored_count++;
 		return BP_OK;
 	}
-	if (kind != SOURCE_KIND_MERL) {
+	if (kind != SOURCE_KIND_MEASURED) {
 		notice(list, SOURCE_DAMAGED, path, reason);
 		return BP_OK;
 	}
@@ -222,6 +223,12 @@ static bp_status thing_add(struct source_list *list, const char *path, bool name
 		return refuse(list, name, path, NULL, reason, error);
 	list->unwanted_count++;
 	return BP_OK;
+}
+
+static bool is_hidden(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return (slash ? slash[1] : path[0]) == '.';
 }
 
 /* One file, folder or other thing; `named`: the user gave this very path. */
@@ -242,8 +249,11 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 		return folder_add(list, path, &about, visited, depth, error);
 	if (!S_ISREG(about.st_mode))
 		return thing_add(list, path, named, kind_text(about.st_mode), error);
-	switch (named ? source_kind_by_content(path) : source_kind_by_name(path)) {
-	case SOURCE_KIND_MERL: return item_add(list, path, NULL, (uint64_t)about.st_size, error);
+	enum source_kind kind = named ? source_kind_by_content(path) : source_kind_by_name(path);
+	if (kind == SOURCE_KIND_OTHER && !is_hidden(path) && source_is_tensor_file(path))
+		kind = SOURCE_KIND_MEASURED;
+	switch (kind) {
+	case SOURCE_KIND_MEASURED: return item_add(list, path, NULL, (uint64_t)about.st_size, error);
 	case SOURCE_KIND_CONTAINER: return container_add(list, path, named, error);
 	case SOURCE_KIND_FOREIGN:
 		notice(list, SOURCE_DAMAGED, path,
@@ -256,6 +266,7 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 		break;
 	}
 	list->ignored_count++;
+	licences_note(&list->licences, path, NULL);
 	return BP_OK;
 }
 
@@ -313,7 +324,7 @@ static void input_check(struct source_list *list, const char *path, const struct
 	    list->unwanted_count > before->unwanted_count || list->refused_count > before->refused_count ||
 	    list->damaged_count > before->damaged_count || list->skipped_count > before->skipped_count)
 		return;
-	snprintf(reason, sizeof reason, "no material in it; other files passed over: %zu (MERL files end in .binary)",
+	snprintf(reason, sizeof reason, "no material in it; other files passed over: %zu (measured ones end in .binary or .bsdf)",
 	         list->ignored_count - before->ignored_count);
 	notice(list, SOURCE_DAMAGED, path, reason);
 }
@@ -354,6 +365,7 @@ void source_list_free(struct source_list *list)
 	free(list->items);
 	free(list->streams);
 	free(list->stream_named);
+	licences_free(&list->licences);
 	source_names_free(list->names);
 	*list = (struct source_list){0};
 }

@@ -1,9 +1,9 @@
 /*
- * source.h: what `build` is given -> materials: MERL files, folders searched to the bottom,
+ * source.h: what `build` is given -> materials: MERL files, those of the RGL database, folders searched to the bottom,
  * tars and zips. Part of the tool, not of the library.
  *
- * What counts. A file given by name is a MERL file or a container by its content, whatever it
- * is called. In a folder, *.binary are MERL files, and *.zip, *.tar, *.tar.gz (.bz2 .xz .lzma
+ * What counts. A file given by name is a measured file (MERL's, or one of the RGL database) or a container by its content, whatever it
+ * is called. In a folder, *.binary and *.bsdf are measured files, as is what begins like one of the RGL database, and *.zip, *.tar, *.tar.gz (.bz2 .xz .lzma
  * .zst .Z), *.tgz, *.tbz, *.tbz2, *.txz, *.tzst, and *.binary.gz and so on are containers; other and hidden
  * files (".x") are passed over and counted. A material's name is the file's stem: the last part
  * of its path without the suffix. Links to files and folders are followed; a folder is searched once.
@@ -44,7 +44,7 @@ struct source_item {
 	char *path;       /* the file, or the container */
 	char *member;     /* path inside the container, or NULL for a plain file */
 	uint32_t ordinal; /* of the member in its container */
-	uint64_t bytes;   /* of the MERL file; UINT64_MAX where unknown */
+	uint64_t bytes;   /* of the measured file; UINT64_MAX where unknown */
 };
 
 struct source_list {
@@ -53,7 +53,8 @@ struct source_list {
 	char **streams;     /* paths, in ascending byte order */
 	bool *stream_named; /* of each, whether the user gave this very path */
 	size_t stream_count;
-	size_t ignored_count;                /* files that are neither MERL files nor containers by their name */
+	size_t ignored_count;                /* files that are neither measured files nor containers by their name */
+	struct licences licences;            /* of these, texts of licences */
 	size_t unwanted_count;               /* materials that options->wanted turned down */
 	size_t skipped_count, damaged_count; /* notices of each kind */
 	size_t refused_count;                /* materials that cannot be packed */
@@ -87,6 +88,9 @@ bp_status source_stream_next(struct source_list *list, const char *path, struct 
 bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member,
                            bp_error *error);
 void source_item_clear(struct source_item *item);
+
+/* Notes the texts of licences that were met in a container so far. */
+void source_licences_take(struct source_list *list, const char *path, const struct container *container);
 
 /* What options->wanted says. */
 bool source_is_wanted(const struct source_list *list, const char *name);

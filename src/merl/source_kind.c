@@ -6,12 +6,17 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "rgl/tensor_file.h"
+
+enum { HEAD_BYTES = 512 };
+
 static bool ends_with(const char *text, const char *suffix)
 {
 	const size_t text_bytes = strlen(text), suffix_bytes = strlen(suffix);
 	return text_bytes > suffix_bytes && strcasecmp(text + text_bytes - suffix_bytes, suffix) == 0;
 }
 
+static const char *const MEASURED[] = {".binary", ".bsdf", NULL};
 static const char *const COMPRESSIONS[] = {".gz", ".bz2", ".xz", ".lzma", ".zst", ".Z", NULL};
 static const char *const ARCHIVES[] = {".zip", ".tar", ".tgz", ".tbz", ".tbz2", ".txz", ".tzst", NULL};
 
@@ -36,8 +41,8 @@ enum source_kind source_kind_by_name(const char *path)
 	const char *name = base_name(path);
 	if (name[0] == '.')
 		return SOURCE_KIND_OTHER;
-	if (ends_with(name, ".binary"))
-		return SOURCE_KIND_MERL;
+	if (suffix_among(name, MEASURED))
+		return SOURCE_KIND_MEASURED;
 	if (suffix_among(name, ARCHIVES))
 		return SOURCE_KIND_CONTAINER;
 	if (suffix_among(name, FOREIGN))
@@ -51,7 +56,26 @@ enum source_kind source_kind_by_name(const char *path)
 		return SOURCE_KIND_OTHER;
 	memcpy(inner, name, bytes);
 	inner[bytes] = '\0';
-	return ends_with(inner, ".binary") || ends_with(inner, ".tar") ? SOURCE_KIND_CONTAINER : SOURCE_KIND_OTHER;
+	return suffix_among(inner, MEASURED) || ends_with(inner, ".tar") ? SOURCE_KIND_CONTAINER : SOURCE_KIND_OTHER;
+}
+
+/* The first bytes, zeros behind the end and where there is nothing to read. */
+static void head_read(const char *path, char head[HEAD_BYTES])
+{
+	memset(head, 0, HEAD_BYTES);
+	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	if (fd < 0)
+		return;
+	if (read(fd, head, HEAD_BYTES) < 0)
+		head[0] = '\0';
+	close(fd);
+}
+
+bool source_is_tensor_file(const char *path)
+{
+	char head[HEAD_BYTES];
+	head_read(path, head);
+	return memcmp(head, TENSOR_MAGIC, TENSOR_MAGIC_BYTES) == 0;
 }
 
 enum source_kind source_kind_by_content(const char *path)
@@ -76,28 +100,27 @@ enum source_kind source_kind_by_content(const char *path)
 		{"Rar!", 4, 0},
 	};
 	static const unsigned char MERL[12] = {90, 0, 0, 0, 90, 0, 0, 0, 180, 0, 0, 0};
-	char head[512] = {0};
-	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-	if (fd >= 0) {
-		if (read(fd, head, sizeof head) < 0)
-			head[0] = '\0';
-		close(fd);
-	}
-	if (memcmp(head, MERL, sizeof MERL) == 0)
-		return SOURCE_KIND_MERL;
+	char head[HEAD_BYTES];
+	head_read(path, head);
+	if (memcmp(head, MERL, sizeof MERL) == 0 || memcmp(head, TENSOR_MAGIC, TENSOR_MAGIC_BYTES) == 0)
+		return SOURCE_KIND_MEASURED;
 	for (size_t n = 0; n < sizeof MAGIC / sizeof *MAGIC; n++)
 		if (memcmp(head + MAGIC[n].offset, MAGIC[n].bytes, MAGIC[n].count) == 0)
 			return SOURCE_KIND_CONTAINER;
-	return source_kind_by_name(path) == SOURCE_KIND_CONTAINER ? SOURCE_KIND_CONTAINER : SOURCE_KIND_MERL;
+	return source_kind_by_name(path) == SOURCE_KIND_CONTAINER ? SOURCE_KIND_CONTAINER : SOURCE_KIND_MEASURED;
 }
 
 size_t source_suffix_bytes(const char *name)
 {
-	static const char suffix[] = ".binary";
-	const size_t bytes = strlen(name);
+	char inner[SOURCE_STEM_BYTES];
 	const char *compression = suffix_among(name, COMPRESSIONS);
-	const size_t packed = compression ? strlen(compression) : 0, whole = packed + sizeof suffix - 1;
-	return bytes > whole && strncasecmp(name + bytes - whole, suffix, sizeof suffix - 1) == 0 ? whole : 0;
+	const size_t packed = compression ? strlen(compression) : 0, bytes = strlen(name) - packed;
+	if (bytes >= sizeof inner)
+		return 0;
+	memcpy(inner, name, bytes);
+	inner[bytes] = '\0';
+	const char *suffix = suffix_among(inner, MEASURED);
+	return suffix ? strlen(suffix) + packed : 0;
 }
 
 void source_stem(const char *path, char name[SOURCE_STEM_BYTES])

@@ -4,11 +4,12 @@
 #ifndef MERL_SOURCE_KIND_H
 #define MERL_SOURCE_KIND_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum source_kind {
 	SOURCE_KIND_OTHER,
-	SOURCE_KIND_MERL,
+	SOURCE_KIND_MEASURED, /* a MERL file, or one of the RGL database */
 	SOURCE_KIND_CONTAINER,
 	SOURCE_KIND_FOREIGN /* a container that is not read */
 };
@@ -18,15 +19,18 @@ enum { SOURCE_STEM_BYTES = 512 };
 enum source_kind source_kind_by_name(const char *path);
 
 /*
- * By the first bytes of a regular file that the user named. What is neither is taken for a MERL
+ * By the first bytes of a regular file that the user named. What is neither is taken for a measured
  * file, whose reader then says what is wrong; a container's suffix decides where the bytes do not.
  */
 enum source_kind source_kind_by_content(const char *path);
 
+/* Whether a file begins like one of the RGL database, whatever it is called. */
+bool source_is_tensor_file(const char *path);
+
 /* The material's name: the last part of the path without its suffix (two for x.binary.gz); overlong ones are cut, and are illegal still. */
 void source_stem(const char *path, char name[SOURCE_STEM_BYTES]);
 
-/* How many bytes of a name are a measured file's suffix: ".binary", ".binary.gz" and so on, in either case; 0: it has none. */
+/* How many bytes of a name are a measured file's suffix: ".binary", ".bsdf", ".binary.gz" and so on, in either case; 0: it has none. */
 size_t source_suffix_bytes(const char *name);
 
 #endif

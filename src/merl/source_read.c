@@ -30,6 +30,13 @@ bp_status source_item_fill(struct source_item *item, const char *name, const cha
 	return BP_OK;
 }
 
+void source_licences_take(struct source_list *list, const char *path, const struct container *container)
+{
+	const struct licences *found = container_licences(container);
+	for (size_t n = 0; n < found->count; n++)
+		licences_note(&list->licences, path, found->path[n]);
+}
+
 bool source_is_wanted(const struct source_list *list, const char *name)
 {
 	return !list->options.wanted || list->options.wanted(list->options.user, name);
@@ -82,13 +89,14 @@ bp_status source_stream_next(struct source_list *list, const char *path, struct 
 		if (status != BP_OK)
 			return status;
 		if (!*more) {
+			source_licences_take(list, path, stream);
 			const char *remark = container_remark(stream);
 			const bool tell = list->told != stream && (remark || (container_members(stream) == 0 && stream_is_named(list, path)));
 			list->told = tell ? stream : NULL;
 			return !tell    ? BP_OK
 			       : remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", remark)
 			                : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-			                            "no material in it; other files passed over: %zu (MERL files end in .binary)",
+			                            "no material in it; other files passed over: %zu (measured ones end in .binary or .bsdf)",
 			                            container_ignored(stream));
 		}
 		const bp_status fault = source_name_make(path, member.path, member.fault, name, error);

@@ -96,7 +96,45 @@ static void layers_member(struct json *json, const struct record_head *head)
 	json_close(json);
 }
 
-void facts_full(struct json *json, const struct record_head *head)
+const char *origin_text(enum origin_kind kind)
+{
+	switch (kind) {
+	case ORIGIN_RGL_RGB: return "RGL tensor file, red, green and blue";
+	case ORIGIN_RGL_SPECTRA: return "RGL tensor file, spectra";
+	case ORIGIN_TWO_HALVES: return "MERL-like table with phi_d from 0 to 2 pi, the mean of its halves";
+	default: return NULL;
+	}
+}
+
+const char *origin_word(enum origin_kind kind)
+{
+	static const char *const WORDS[] = {
+		[ORIGIN_RGL_RGB] = "rgl-rgb", [ORIGIN_RGL_SPECTRA] = "rgl-spectra", [ORIGIN_TWO_HALVES] = "merl-two-halves"};
+	return origin_text(kind) ? WORDS[kind] : NULL;
+}
+
+/* What the source's object says beyond a MERL table's. */
+static void origin_members(struct json *json, const struct origin *origin)
+{
+	if (!origin_text(origin->kind))
+		return;
+	json_string(json, "kind", origin_word(origin->kind));
+	if (origin->kind == ORIGIN_RGL_SPECTRA) {
+		json_integer(json, "wavelengths", origin->wavelengths);
+		json_number(json, "first_nm", origin->first_nm);
+		json_number(json, "last_nm", origin->last_nm);
+		json_string(json, "observer", "CIE 1931 2 degrees");
+		json_string(json, "illuminant", "D65");
+		json_string(json, "primaries", "ITU-R BT.709");
+	}
+	json_object(json, "non_reciprocity");
+	json_integer(json, "cells", origin->compared);
+	json_number(json, "median", origin->median);
+	json_number(json, "percentile_95", origin->percentile95);
+	json_close(json);
+}
+
+void facts_full(struct json *json, const struct record_head *head, const struct origin *origin)
 {
 	json_integer(json, "bytes", head->record_bytes);
 	json_string(json, "profile", profile_name(head->profile));
@@ -107,6 +145,7 @@ void facts_full(struct json *json, const struct record_head *head)
 	json_hex(json, "sha256", head->source.sha256, SHA256_BYTES);
 	json_integer(json, "nonfinite_cells", head->source.nonfinite_count);
 	json_integer(json, "cells_taken_as_holes", head->source.hole_count);
+	origin_members(json, origin);
 	json_close(json);
 
 	json_object(json, "lattice");

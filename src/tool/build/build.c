@@ -214,9 +214,9 @@ static void build_prepare_and_work(struct build *build)
 
 static void empty_report(const struct build *build)
 {
-	char ignored[100] = "";
+	char ignored[140] = "";
 	if (build->sources.ignored_count > 0)
-		snprintf(ignored, sizeof ignored, "; other files passed over: %zu (in a folder, MERL files end in .binary)",
+		snprintf(ignored, sizeof ignored, "; other files passed over: %zu (in a folder, measured ones end in .binary or .bsdf)",
 		         build->sources.ignored_count);
 	report_text("%s: not written: no material found in the inputs%s", build->options->output, ignored);
 }
@@ -246,7 +246,7 @@ int build_run(const struct build_options *options)
 	else if (!build.stopped && build.items.count == 0 && whole && !written)
 		empty_report(&build);
 	else
-		report_summary(options, written, build.stopped, &build.totals);
+		report_summary(options, written, build.stopped, &build.totals, &build.sources);
 	if (keep && journal_count(&build.journal) > 0)
 		report_text("%s: finished records: %zu, kept in %s; the same build with --update goes on from them", options->output,
 		            journal_count(&build.journal), build.journal.path);

@@ -1,6 +1,8 @@
 #include "build_inputs.h"
 
 #include "error.h"
+#include "merl/rgl_file.h"
+#include "merl/two_halves.h"
 #include "outcomes.h"
 #include "tool/report.h"
 
@@ -148,9 +150,9 @@ static bool member_find(struct build *build, struct source_item *member)
 /* One byte more than the largest file that can be right: so a worker sees that there is more. */
 static uint64_t member_bytes_most(const struct build *build)
 {
-	if (!build->options->any_lattice)
-		return merl_file_bytes(LATTICE_MERL) + 1;
-	return 12 + 24 * (uint64_t)LATTICE_CELLS_MAX + 1;
+	const uint64_t halves = two_halves_bytes(), tensor = RGL_FILE_BYTES_MAX;
+	const uint64_t table = build->options->any_lattice ? 12 + 24 * (uint64_t)LATTICE_CELLS_MAX : halves;
+	return (table > tensor ? table : tensor) + 1;
 }
 
 /* Copies the member into the slot; *bytes is how much. */

@@ -129,7 +129,7 @@ void report_material(const struct item *item, const struct outcome *outcome, boo
 		report_warning(label, item->source.name, "%s", warnings[i]);
 }
 
-static void summary_json(const char *output, bool written, const struct build_totals *totals)
+static void summary_json(const char *output, bool written, const struct build_totals *totals, const struct source_list *sources)
 {
 	struct json json = json_begin(stdout, false);
 	json_object(&json, NULL);
@@ -143,6 +143,11 @@ static void summary_json(const char *output, bool written, const struct build_to
 	json_integer(&json, "missing", totals->missing);
 	json_integer(&json, "damaged_inputs", totals->damaged);
 	json_integer(&json, "skipped_inputs", totals->skipped);
+	json_integer(&json, "ignored_files", sources->ignored_count);
+	json_array(&json, "licence_texts");
+	for (size_t n = 0; n < sources->licences.count; n++)
+		json_string(&json, NULL, sources->licences.path[n]);
+	json_close(&json);
 	json_integer(&json, "source_bytes", totals->source_bytes);
 	json_integer(&json, "bytes", totals->archive_bytes);
 	json_number(&json, "seconds", totals->seconds);
@@ -150,11 +155,28 @@ static void summary_json(const char *output, bool written, const struct build_to
 	json_finish(&json);
 }
 
-void report_summary(const struct build_options *options, bool written, bool stopped, const struct build_totals *totals)
+/* Files that are no materials, in one line: nothing is wrong, but a licence's text among them concerns who uses the archive. */
+static void ignored_report(const struct source_list *sources)
+{
+	char names[1024] = "";
+	size_t used = 0;
+	for (size_t n = 0; n < sources->licences.count && used < sizeof names; n++)
+		used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
+		                         n                             ? ", "
+		                         : sources->licences.count > 1 ? "; texts of licences: "
+		                                                       : "; the text of a licence: ",
+		                         sources->licences.path[n]);
+	report_text("%zu other file%s passed over%s", sources->ignored_count, sources->ignored_count == 1 ? "" : "s", names);
+}
+
+void report_summary(const struct build_options *options, bool written, bool stopped, const struct build_totals *totals,
+                    const struct source_list *sources)
 {
 	const char *output = options->output;
 	if (options->json)
-		summary_json(output, written, totals);
+		summary_json(output, written, totals, sources);
+	if (written && !options->quiet && sources->ignored_count > 0)
+		ignored_report(sources);
 	if (written && totals_whole(totals))
 		return;
 	if (stopped) { /* how far the workers came is chance: no counts */

@@ -57,7 +57,8 @@ void report_passed_over(const char *path, const char *reason, bool json, bool qu
 
 void report_material(const struct item *item, const struct outcome *outcome, bool json, bool quiet);
 
-/* After everything. Text only when something went wrong; without counts when the build was stopped before its end. */
-void report_summary(const struct build_options *options, bool written, bool stopped, const struct build_totals *totals);
+/* After everything: what was passed over, in one line, with the names of texts of licences. More text only when something went wrong; without counts when the build was stopped before its end. */
+void report_summary(const struct build_options *options, bool written, bool stopped, const struct build_totals *totals,
+                    const struct source_list *sources);
 
 #endif

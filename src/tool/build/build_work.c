@@ -113,8 +113,12 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 	struct lattice lattice = {0};
 	struct carried carried = {0};
 	struct sha256 sha;
-	const struct merl_reading reading = {
-		.seen = checksum_add, .seen_user = &sha, .any_dims = build->options->any_lattice, .carried = &carried};
+	const struct merl_reading reading = {.seen = checksum_add,
+	                                     .seen_user = &sha,
+	                                     .any_dims = build->options->any_lattice,
+	                                     .carried = &carried,
+	                                     .origin = &delivery.source.origin,
+	                                     .file_bytes = &delivery.source.bytes};
 	bp_status status;
 
 #ifdef BRDFPACK_TEST_HOOKS
@@ -128,7 +132,6 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 		status = source_item_read(&build->sources.items[job->number], &cursor, &reading, &lattice, error);
 	if (status)
 		return status;
-	delivery.source.bytes = merl_file_bytes(lattice.dims); /* a file that was read to its end has exactly these */
 	delivery.source.nonfinite_count = lattice.nonfinite_count;
 	sha256_finish(&sha, delivery.source.sha256);
 	stage_enter(STAGE_REST);

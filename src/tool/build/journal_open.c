@@ -75,7 +75,7 @@ static bp_status entries_scan(struct journal *journal, uint64_t file_bytes, bp_e
 			}
 		}
 		const uint64_t offset = journal->bytes + sizeof head;
-		if (journal_read(journal, offset, record, bytes, NULL) || record_head_parse(record, bytes, &about, NULL) ||
+		if (journal_read(journal, offset, record, bytes, NULL) || record_head_read(record, bytes, &about, NULL) ||
 		    about.record_bytes != bytes)
 			break;
 		if (journal->found_count == entry_room) {

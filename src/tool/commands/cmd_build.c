@@ -1,6 +1,7 @@
 #include "tool/build/build.h"
 #include "tool/command.h"
 #include "tool/cores.h"
+#include "tool/facts.h"
 #include "tool/options.h"
 #include "tool/report.h"
 
@@ -133,7 +134,7 @@ static int build_main(const struct command *self, int argc, char **argv)
 	if (!option_output(self, options.output, "OUT.bpk"))
 		return EXIT_USAGE;
 	if (optind >= argc)
-		return report_usage(self, "no input; give MERL files, folders, tar or zip files");
+		return report_usage(self, "no input; give measured files, folders, tar or zip files");
 	if (has_budget && options.fit.max_error > 0)
 		return report_usage(self, "--budget and --max-error exclude each other");
 	if (options.fit.max_error > 0)
@@ -148,8 +149,9 @@ const struct command command_build = {
 	.run = build_main,
 	.description = "pack measured materials into an archive",
 	.usage = "Usage: brdfpack build -o OUT.bpk [OPTION]... INPUT...\n"
-			 "Packs measured materials into an archive. INPUT is a MERL file, a folder (searched to the\n"
-			 "bottom), or a tar or zip, plain or compressed. A material's name is its file's stem.\n"
+			 "Packs measured materials into an archive. INPUT is a MERL file, a .bsdf of the RGL\n"
+			 "database, a folder (searched to the bottom), or a tar or zip, plain or compressed. A\n"
+			 "material's name is its file's stem. `man brdfpack` says what becomes of a .bsdf.\n"
 			 "\n"
 			 "  -o, --output OUT.bpk   the archive; an older one is replaced only by a whole one\n"
 			 "      --force            replace what is there also when it is an input, or no archive\n"

@@ -1,4 +1,5 @@
 #include "tool/command.h"
+#include "tool/export/export.h"
 #include "tool/facts.h"
 #include "tool/folder.h"
 #include "tool/options.h"
@@ -8,8 +9,10 @@
 #include "error.h"
 #include "memory_stream.h"
 #include "merl/merl_file.h"
+#include "merl/spelling.h"
 #include "output_file.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,8 +50,24 @@ static bp_status table_fit(struct table *table, const struct model *model, bp_er
 	return status;
 }
 
-/* What to write: a decoded table with its record, the table alone, or the parameters. */
-enum form { FORM_MERL, FORM_PLAIN, FORM_JSON };
+/* What to write: a decoded table with its record, the table alone, the parameters, or a renderer's file. */
+enum form { FORM_MERL, FORM_PLAIN, FORM_JSON, FORM_EXPORT };
+
+/* What --format is called by, and the suffix of its files. */
+static const struct format {
+	const char *name, *suffix;
+	enum form form;
+	enum export_format export; /* FORM_EXPORT */
+} FORMATS[] = {
+	{"merl", "binary", FORM_MERL, 0},
+	{"json", "json", FORM_JSON, 0},
+	{"bsdf", "bsdf", FORM_EXPORT, EXPORT_BSDF},
+	{"mbsdf", "mbsdf", FORM_EXPORT, EXPORT_MBSDF},
+};
+enum { FORMAT_COUNT = sizeof FORMATS / sizeof *FORMATS };
+
+/* Below so many dB a renderer's file that is as large as it may be is told to be poor. */
+static const double EXPORT_POOR = 40;
 
 /* The record to carry: NULL where it is damaged, but not in anything that this program decodes, which it has done. */
 static bp_status record_read(const struct selection *selection, const struct index_entry *entry, uint8_t **record,
@@ -64,10 +83,6 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 {
 	struct model *model = NULL;
 	uint8_t *record = NULL;
-	if (!table->any_lattice && lattice_cells(head->dims) > 2 * lattice_cells(LATTICE_MERL))
-		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-		                 "a table of %u x %u x %u cells would take %.0f MB; with --any-lattice it is written", head->dims.theta_h,
-		                 head->dims.theta_d, head->dims.phi_d, (double)merl_file_bytes(head->dims) / 1e6);
 	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
 	if (!status && !plain)
 		status = record_read(selection, entry, &record, error);
@@ -82,9 +97,51 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 	return status;
 }
 
-static bp_status json_write(const struct record_head *head, const char *path, enum output_rule rule, bp_error *error)
+/* Writes all of the bytes, or none. */
+static bp_status bytes_write(const struct byte_buffer *bytes, const char *path, enum output_rule rule, bp_error *error)
 {
 	struct output_file file;
+	bp_status status = output_file_open(path, rule, &file, error);
+	if (status)
+		return status;
+	status = output_file_write(&file, bytes->bytes, bytes->count, error);
+	if (!status)
+		return output_file_commit(&file, error);
+	output_file_discard(&file);
+	return status;
+}
+
+static bp_status lattice_size_check(const struct record_head *head, bool any_lattice, bp_error *error)
+{
+	if (any_lattice || lattice_cells(head->dims) <= 2 * lattice_cells(LATTICE_MERL))
+		return BP_OK;
+	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+	                 "a table of %u x %u x %u cells would take %.0f MB; with --any-lattice it is written", head->dims.theta_h,
+	                 head->dims.theta_d, head->dims.phi_d, (double)merl_file_bytes(head->dims) / 1e6);
+}
+
+static bp_status export_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
+                              const char *path, enum output_rule rule, const struct export_options *options, bp_error *error)
+{
+	struct model *model = NULL;
+	struct byte_buffer bytes = {0};
+	struct deviation deviation;
+	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
+	if (!status)
+		status = export_material(model, head->name, options, &bytes, &deviation, error);
+	if (!status)
+		status = bytes_write(&bytes, path, rule, error);
+	if (!status && deviation.psnr < EXPORT_POOR && rule != OUTPUT_COMPARE)
+		report_warning(path, NULL, "in %zu bytes it is %.1f dB from the material; a larger --size brings it nearer", bytes.count,
+		               deviation.psnr);
+	byte_buffer_free(&bytes);
+	model_free(model);
+	return status;
+}
+
+static bp_status json_write(const struct record_head *head, const struct origin *origin, const char *path, enum output_rule rule,
+                            bp_error *error)
+{
 	struct byte_buffer text = {0};
 	bp_status status;
 
@@ -94,18 +151,11 @@ static bp_status json_write(const struct record_head *head, const char *path, en
 	struct json json = json_begin(memory, true);
 	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
-	facts_full(&json, head);
+	facts_full(&json, head, origin);
 	json_close(&json);
 	json_finish(&json);
 	fclose(memory);
-	status = text.failed ? error_memory(error, text.count) : output_file_open(path, rule, &file, error);
-	if (!status) {
-		status = output_file_write(&file, text.bytes, text.count, error);
-		if (!status)
-			status = output_file_commit(&file, error);
-		else
-			output_file_discard(&file);
-	}
+	status = text.failed ? error_memory(error, text.count) : bytes_write(&text, path, rule, error);
 	byte_buffer_free(&text);
 	return status;
 }
@@ -113,6 +163,7 @@ static bp_status json_write(const struct record_head *head, const char *path, en
 struct extraction {
 	struct selection selection;
 	enum form form;
+	struct export_options export;
 	struct table table;
 	struct index_entry entry; /* of the material that was asked for last */
 };
@@ -136,8 +187,16 @@ static bp_status material_write(void *user, uint64_t n, const char *path, enum o
 		status = archive_entry_head(selection->archive, &extraction->entry, &head, error);
 	if (status)
 		return status;
-	if (extraction->form == FORM_JSON)
-		return json_write(&head, path, rule, error);
+	if (extraction->form == FORM_JSON) {
+		struct origin origin;
+		status = archive_entry_origin(selection->archive, &extraction->entry, &head, &origin, error);
+		return status ? status : json_write(&head, &origin, path, rule, error);
+	}
+	status = lattice_size_check(&head, extraction->table.any_lattice, error);
+	if (status)
+		return status;
+	if (extraction->form == FORM_EXPORT)
+		return export_write(selection, &extraction->entry, &head, path, rule, &extraction->export, error);
 	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->table,
 	                  error);
 }
@@ -149,46 +208,93 @@ static void material_failed(void *user, uint64_t n, const bp_error *error)
 	report_error(extraction->selection.path, extraction->entry.name[0] ? extraction->entry.name : NULL, error);
 }
 
+/* NULL, after a message, where there is no format of that name. */
+static const struct format *format_find(const struct command *self, const char *name)
+{
+	struct name_guess guess;
+	name_guess_start(&guess, name);
+	for (int n = 0; n < FORMAT_COUNT; n++) {
+		if (!strcmp(FORMATS[n].name, name))
+			return &FORMATS[n];
+		name_guess_offer(&guess, FORMATS[n].name);
+	}
+	const char *best = name_guess_best(&guess);
+	report_usage(self, "--format: '%s' is none of merl, json, bsdf and mbsdf%s%s%s", name, best ? "; did you mean '" : "",
+	             best ? best : "", best ? "'?" : "");
+	return NULL;
+}
+
+/* What belongs together on the command line. */
+struct wishes {
+	const struct format *format;
+	const char *folder, *size; /* as written, or NULL */
+	bool plain, spectral, force;
+};
+
+/* Fills what is to be extracted; an exit code. */
+static int wishes_take(const struct command *self, const struct wishes *wishes, struct extraction *out)
+{
+	const struct format *format = wishes->format;
+	const bool exports = format->form == FORM_EXPORT;
+	const uint64_t least = exports ? export_bytes_least(format->export, wishes->spectral) : 0;
+	int64_t most = exports ? (int64_t)export_bytes_usual(format->export, wishes->spectral) : 0;
+	if (wishes->plain && format->form != FORM_MERL)
+		return report_usage(self, "--plain is about MERL files, --format %s writes none", format->name);
+	if (wishes->spectral && !(exports && format->export == EXPORT_BSDF))
+		return report_usage(self, "--spectral is about --format bsdf");
+	if (wishes->size && !exports)
+		return report_usage(self, "--size is about --format bsdf and --format mbsdf");
+	if (wishes->size && !option_bytes(self, "--size", wishes->size, 1, EXPORT_BYTES_MAX, &most))
+		return EXIT_USAGE;
+	if (exports && (uint64_t)most < least)
+		return report_usage(
+			self, "--size: %" PRId64 " bytes are too few for --format %s%s; %" PRIu64 " are enough for its smallest file", most,
+			format->name, wishes->spectral ? " --spectral" : "", least);
+	out->form = wishes->plain ? FORM_PLAIN : format->form;
+	out->export = (struct export_options){format->export, wishes->spectral, (uint64_t)most};
+	return EXIT_OK;
+}
+
 static int extract_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_FORCE, OPTION_ANY_LATTICE };
+	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_FORCE, OPTION_ANY_LATTICE, OPTION_SPECTRAL, OPTION_SIZE };
 	static const struct option names[] = {{"directory", required_argument, NULL, 'C'},
 	                                      {"format", required_argument, NULL, OPTION_FORMAT},
 	                                      {"plain", no_argument, NULL, OPTION_PLAIN},
 	                                      {"force", no_argument, NULL, OPTION_FORCE},
 	                                      {"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
+	                                      {"spectral", no_argument, NULL, OPTION_SPECTRAL},
+	                                      {"size", required_argument, NULL, OPTION_SIZE},
 	                                      {0}};
-	const char *folder = ".";
 	struct extraction extraction = {.form = FORM_MERL};
-	bool json = false, plain = false, force = false;
+	struct wishes wishes = {.format = FORMATS, .folder = "."};
 	int option;
 
-	while ((option = options_next(self, argc, argv, "C:", names)) >= 0) {
-		if (option == 'C')
-			folder = optarg;
-		else if (option == OPTION_PLAIN)
-			plain = true;
-		else if (option == OPTION_FORCE)
-			force = true;
-		else if (option == OPTION_ANY_LATTICE)
-			extraction.table.any_lattice = true;
-		else if (!strcmp(optarg, "json") || !strcmp(optarg, "merl"))
-			json = optarg[0] == 'j';
-		else
-			return report_usage(self, "--format: '%s' is neither 'merl' nor 'json'", optarg);
-	}
+	while ((option = options_next(self, argc, argv, "C:", names)) >= 0)
+		switch (option) {
+		case 'C': wishes.folder = optarg; break;
+		case OPTION_PLAIN: wishes.plain = true; break;
+		case OPTION_FORCE: wishes.force = true; break;
+		case OPTION_ANY_LATTICE: extraction.table.any_lattice = true; break;
+		case OPTION_SPECTRAL: wishes.spectral = true; break;
+		case OPTION_SIZE: wishes.size = optarg; break;
+		case OPTION_FORMAT:
+			wishes.format = format_find(self, optarg);
+			if (!wishes.format)
+				return EXIT_USAGE;
+			break;
+		}
 	if (option != OPTIONS_END)
 		return options_exit_code(option);
-	if (json && plain)
-		return report_usage(self, "--plain is about MERL files, --format json writes none");
-	int opened = selection_from(&extraction.selection, self, argv + optind, argc - optind);
-	if (opened != EXIT_OK)
-		return opened;
-	extraction.form = json ? FORM_JSON : plain ? FORM_PLAIN : FORM_MERL;
-	const struct folder_set set = {.folder = folder,
-	                               .suffix = json ? "json" : "binary",
+	int code = wishes_take(self, &wishes, &extraction);
+	if (code == EXIT_OK)
+		code = selection_from(&extraction.selection, self, argv + optind, argc - optind);
+	if (code != EXIT_OK)
+		return code;
+	const struct folder_set set = {.folder = wishes.folder,
+	                               .suffix = wishes.format->suffix,
 	                               .count = extraction.selection.count,
-	                               .force = force,
+	                               .force = wishes.force,
 	                               .user = &extraction,
 	                               .name = material_name,
 	                               .write = material_write,
@@ -202,7 +308,7 @@ static int extract_main(const struct command *self, int argc, char **argv)
 const struct command command_extract = {
 	.name = "extract",
 	.run = extract_main,
-	.description = "write materials as MERL files, or their parameters as JSON",
+	.description = "write materials as MERL or renderers' files, or as JSON",
 	.usage = "Usage: brdfpack extract [-C DIR] [OPTION]... ARCHIVE [NAME]...\n"
 			 "Writes DIR/NAME.binary for the named materials, or for all. When a file of one of these names\n"
 			 "is there and differs, nothing is written. Cells wholly below the horizon\n"
@@ -213,6 +319,11 @@ const struct command command_extract = {
 			 "  -C, --directory DIR  where to (default: here); created when it is missing\n"
 			 "      --format merl    MERL files (the default)\n"
 			 "      --format json    DIR/NAME.json with the parameters instead\n"
+			 "      --format bsdf    DIR/NAME.bsdf for `measured` of Mitsuba 3 and what else reads the RGL database\n"
+			 "      --format mbsdf   DIR/NAME.mbsdf, a measured BSDF for renderers with NVIDIA's MDL\n"
+			 "      --spectral       bsdf: with a smooth spectrum instead of RGB, for pbrt-v4 and spectral Mitsuba\n"
+			 "      --size BYTES     bsdf, mbsdf: the largest file (2M; --spectral 8M; mbsdf 20M). It is the smallest\n"
+			 "                       with spheres 50 dB from the material's, or the best that fits\n"
 			 "      --force          replace files that are there\n"
 			 "      --any-lattice    also tables of more than twice as many cells as MERL's\n"
 			 "      --plain          no record: every cell below the horizon is -1\n"

@@ -65,12 +65,27 @@ static const char *section_name(unsigned type)
 	case SECTION_SLICES: return "c_dphi|h";
 	case SECTION_FIELDS: return "fields";
 	case SECTION_PLANES: return "bit planes";
+	case SECTION_ORIGIN: return "origin";
 	default: return "other";
 	}
 }
 
+/* What kind of file the source was, unless it was a MERL table. */
+static void origin_print(const struct origin *origin)
+{
+	if (!origin_text(origin->kind))
+		return;
+	printf("              %s", origin_text(origin->kind));
+	if (origin->kind == ORIGIN_RGL_SPECTRA)
+		printf(" (%" PRIu32 " wavelengths, %g to %g nm), made linear RGB: CIE 1931 2 degrees, D65, ITU-R BT.709",
+		       origin->wavelengths, origin->first_nm, origin->last_nm);
+	printf(
+		"\n              made reciprocal: the two directions differed by %.1f %% in the median, %.1f %% in the 95th percentile\n",
+		100 * origin->median, 100 * origin->percentile95);
+}
+
 /* Everything about one material. */
-static void material_print(const struct record_head *head)
+static void material_print(const struct record_head *head, const struct origin *origin)
 {
 	char sha256[SHA256_HEX_CHARACTERS + 1];
 	sha256_to_hex(head->source.sha256, sha256);
@@ -91,6 +106,7 @@ static void material_print(const struct record_head *head)
 	if (head->source.hole_count > 0 || head->options.zeros != ZEROS_AUTO)
 		printf("              %" PRIu32 " cells taken as not measured for the value they hold (--zeros=%s)\n",
 		       head->source.hole_count, ZEROS_NAMES[head->options.zeros]);
+	origin_print(origin);
 	printf("  lattice     %" PRIu32 " x %" PRIu32 " x %" PRIu32 " (theta_h, theta_d, phi_d), measured down to cosine %.4f\n",
 	       head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->horizon_limit);
 	for (uint32_t i = 0; i < head->layer_count; i++) {
@@ -122,12 +138,12 @@ static void material_print(const struct record_head *head)
 	printf("%s\n", head->left_out ? "" : " no pair");
 }
 
-static void material_json(const struct record_head *head)
+static void material_json(const struct record_head *head, const struct origin *origin)
 {
 	struct json json = json_begin(stdout, false);
 	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
-	facts_full(&json, head);
+	facts_full(&json, head, origin);
 	json_close(&json);
 	json_finish(&json);
 }
@@ -184,12 +200,18 @@ static int list_main(const struct command *self, int argc, char **argv)
 			totals.failed++;
 			continue;
 		}
+		struct origin origin = {.kind = ORIGIN_MERL};
+		bp_error fault;
+		if ((json || !selection.all) && archive_entry_origin(selection.archive, &entry, &head, &origin, &fault)) {
+			report_error(selection.path, entry.name, &fault);
+			totals.failed++;
+		}
 		if (json)
-			material_json(&head);
+			material_json(&head, &origin);
 		else if (selection.all)
 			row_print(&head, width);
 		else
-			material_print(&head);
+			material_print(&head, &origin);
 		totals.materials++;
 		totals.record_bytes += head.record_bytes;
 		totals.source_bytes += head.source.bytes;

@@ -1,0 +1,41 @@
+#include "input.h"
+
+#include <inttypes.h>
+
+#include "error.h"
+
+bp_status input_fill(struct input *in, void *bytes, size_t count, size_t *got, bp_error *error)
+{
+	char *next = bytes;
+	size_t filled = 0;
+	while (filled < count) {
+		size_t once = 0;
+		bp_status status = in->read(in->user, next + filled, count - filled, &once, error);
+		if (status != BP_OK)
+			return status;
+		if (!once)
+			break;
+		filled += once;
+	}
+	if (in->how.seen && filled)
+		in->how.seen(in->how.seen_user, bytes, filled);
+	in->done += filled;
+	*got = filled;
+	return BP_OK;
+}
+
+bp_status input_end(struct input *in, bp_error *error)
+{
+	char extra;
+	size_t got = 0;
+	bp_status status = in->read(in->user, &extra, 1, &got, error);
+	if (status == BP_OK && got)
+		status = error_set(error, BP_ERROR_BAD_INPUT, in->done,
+		                   "trailing bytes: expected the end after %" PRIu64 " bytes, found more", in->done);
+	return status;
+}
+
+bp_status input_truncated(uint64_t expected, uint64_t found, bp_error *error)
+{
+	return error_set(error, BP_ERROR_BAD_INPUT, found, "truncated: expected %" PRIu64 " bytes, found %" PRIu64, expected, found);
+}

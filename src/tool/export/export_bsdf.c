@@ -1,0 +1,137 @@
+#include "export_bsdf.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "error.h"
+#include "warped.h"
+#include "tensor_writer.h"
+#include "upsampling.h"
+
+enum { DESCRIPTION_BYTES = BP_NAME_BYTES_MAX + 128, FIELDS_MAX = 12 };
+
+/* Samples along s and t, from file to file some 1.4 times as many bytes. */
+static const uint32_t SIZES[] = {12, 16, 20, 24, 28, 32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 160, 192, 224, 256};
+enum { SIZE_COUNT = sizeof SIZES / sizeof *SIZES };
+
+/* The other axes follow: more samples pay where visible normals and angles of incidence are known as well. */
+static struct warped_shape shape_of(uint32_t size)
+{
+	return (struct warped_shape){.angles = 6 + size / 5, .width = 16 + size / 2, .height = 13 + size / 3, .size = size};
+}
+
+/* What a file holds beside the fields' own arrays. */
+struct parts {
+	const uint32_t version[2], phi_i; /* 1.0; one azimuth, 0, as the bits of a float */
+	uint8_t jacobian;
+	char description[DESCRIPTION_BYTES];
+	float ndf[2][WARPED_NORMALS], sigma[2][WARPED_NORMALS]; /* the two rows of an isotropic file are equal */
+	float *spectra;                                         /* NULL: the file has rgb */
+};
+
+/* The tensors of a file; `fields` may lack its arrays where only the bytes are asked for. Returns how many there are. */
+static size_t tensors_list(const struct warped *warped, const struct parts *parts, bool spectral, uint64_t description_bytes,
+                           struct tensor *tensor)
+{
+	const struct warped_shape *shape = &warped->shape;
+	const uint64_t angles = shape->angles, size = shape->size;
+	const struct tensor list[] = {
+		{"version", TENSOR_NUMBER_U32, 1, {2}, parts->version},
+		{"description", TENSOR_NUMBER_U8, 1, {description_bytes}, parts->description},
+		{"phi_i", TENSOR_NUMBER_F32, 1, {1}, &parts->phi_i},
+		{"theta_i", TENSOR_NUMBER_F32, 1, {angles}, warped->theta_i},
+		{"ndf", TENSOR_NUMBER_F32, 2, {2, WARPED_NORMALS}, parts->ndf},
+		{"sigma", TENSOR_NUMBER_F32, 2, {2, WARPED_NORMALS}, parts->sigma},
+		{"vndf", TENSOR_NUMBER_F32, 4, {1, angles, shape->height, shape->width}, warped->visible.density},
+		{"luminance", TENSOR_NUMBER_F32, 4, {1, angles, size, size}, warped->luminance},
+		{"jacobian", TENSOR_NUMBER_U8, 1, {1}, &parts->jacobian},
+	};
+	size_t count = sizeof list / sizeof *list;
+	for (size_t n = 0; n < count; n++)
+		tensor[n] = list[n];
+	if (spectral) {
+		tensor[count++] = (struct tensor){"wavelengths", TENSOR_NUMBER_F32, 1, {UPSAMPLING_COUNT}, UPSAMPLING_WAVELENGTHS};
+		tensor[count++] =
+			(struct tensor){"spectra", TENSOR_NUMBER_F32, 5, {1, angles, UPSAMPLING_COUNT, size, size}, parts->spectra};
+	} else {
+		tensor[count++] = (struct tensor){"rgb", TENSOR_NUMBER_F32, 5, {1, angles, 3, size, size}, warped->rgb};
+	}
+	return count;
+}
+
+static uint64_t bytes_of(uint32_t size, bool spectral)
+{
+	const struct warped warped = {.shape = shape_of(size)};
+	const struct parts parts = {0};
+	struct tensor tensor[FIELDS_MAX];
+	return tensor_file_bytes(tensor, tensors_list(&warped, &parts, spectral, DESCRIPTION_BYTES, tensor));
+}
+
+uint64_t export_bsdf_least(bool spectral) { return bytes_of(SIZES[0], spectral); }
+
+static void evaluate(const void *exported, const float wi[3], const float wo[3], double rgb[3])
+{
+	warped_evaluate(exported, wi, wo, rgb);
+}
+
+/* The smallest of the shapes that reaches the figure and fits; else the best that fits. warped_free *out in any case. */
+static bp_status warped_choose(const struct reflectance *reflectance, const struct export_options *options, struct warped *out,
+                               struct deviation *deviation, bp_error *error)
+{
+	struct deviation_reference *reference = NULL;
+	bp_status status = deviation_reference_make(reflectance, &reference, error);
+	*deviation = DEVIATION_WORST;
+	for (int n = 0; !status && n < SIZE_COUNT && !deviation_suffices(deviation); n++) {
+		const struct warped_shape shape = shape_of(SIZES[n]);
+		struct warped warped = {0};
+		struct deviation reached = DEVIATION_WORST;
+		if (bytes_of(SIZES[n], options->spectral) > options->most_bytes)
+			break;
+		status = warped_make(reflectance, &shape, &warped, error);
+		if (!status)
+			status = deviation_measure(reference, evaluate, &warped, &reached, error);
+		if (!status && reached.psnr > deviation->psnr) {
+			*deviation = reached;
+			warped_free(out);
+			*out = warped;
+		} else {
+			warped_free(&warped);
+		}
+	}
+	deviation_reference_free(reference);
+	return status;
+}
+
+bp_status export_bsdf(const struct reflectance *reflectance, const char *name, const struct export_options *options,
+                      struct byte_buffer *out, struct deviation *deviation, bp_error *error)
+{
+	struct parts parts = {.version = {1, 0}, .jacobian = 1};
+	struct warped warped = {0};
+	struct tensor tensor[FIELDS_MAX];
+	bp_status status = warped_choose(reflectance, options, &warped, deviation, error);
+	const size_t points = (size_t)warped.shape.size * warped.shape.size;
+	if (!status && options->spectral) {
+		const size_t count = points * warped.shape.angles * UPSAMPLING_COUNT;
+		parts.spectra = malloc(count * sizeof *parts.spectra);
+		if (parts.spectra)
+			upsample(warped.rgb, warped.shape.angles, points, parts.spectra);
+		else
+			status = error_memory(error, count * sizeof *parts.spectra);
+	}
+	if (!status) {
+		for (uint32_t n = 0; n < 2 * WARPED_NORMALS; n++) {
+			parts.ndf[n / WARPED_NORMALS][n % WARPED_NORMALS] = (float)warped.normals.density[n % WARPED_NORMALS];
+			parts.sigma[n / WARPED_NORMALS][n % WARPED_NORMALS] = (float)warped.normals.area[n % WARPED_NORMALS];
+		}
+		const int length = snprintf(parts.description, sizeof parts.description,
+		                            "%s; by brdfpack %s, %.1f dB from its record (spheres under point and key lights)", name,
+		                            bp_version_text(), deviation->psnr);
+		tensor_file_write(tensor, tensors_list(&warped, &parts, options->spectral, (uint64_t)length, tensor), out);
+		if (out->failed)
+			status = error_memory(error, out->count);
+	}
+	free(parts.spectra);
+	warped_free(&warped);
+	return status;
+}
