@@ -34,8 +34,9 @@ TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c source_names.c sour
 	normal_form.c spelling.c) src/memory_stream.c
 LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/rgl/*.c src/merl/*.c src/model/*.c src/model/*/*.c src/codec/*.c src/codec/*/*.c src/archive/*.c))
 TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c src/tool/*/*.c)
-# The half that only reads: what is left of these sources when the linker drops what no function of it calls.
+# Measured files of every format, read and written: for who packs.
 MEASURED_C   := $(wildcard src/rgl/*.c) $(addprefix src/merl/,merl_file.c carried.c foreign.c input.c reciprocity.c rgl_file.c rgl_lattice.c two_halves.c)
+# The half that only reads: what is left of these sources when the linker drops what no function of it calls.
 WRITER_C     := $(addprefix src/,output_file.c output_file_sweep.c output_path.c) $(MEASURED_C) \
 	$(addprefix src/codec/record_,carried.c copy.c measure.c encode.c) \
 	$(addprefix src/archive/,gather.c index_write.c merge.c pack.c recover.c writer.c)
