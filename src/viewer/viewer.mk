@@ -3,7 +3,7 @@ EMCC         ?= emcc
 VIEWER_BUILD := $(BUILD)/viewer
 WASM_BUILD   := $(BUILD)/wasm
 # The half that only reads, and MERL files, which can be dropped onto the page. Kernels for AVX2 are compiled as plain ones and never called.
-VIEWER_C     := $(READER_C) src/merl/merl_file.c src/merl/carried.c src/render/lights.c $(wildcard src/viewer/*.c)
+VIEWER_C     := $(READER_C) $(MEASURED_C) src/render/lights.c $(wildcard src/viewer/*.c)
 VIEWER_O     := $(VIEWER_C:%.c=$(WASM_BUILD)/%.o)
 WASM_CFLAGS  := -O3 -msimd128 -std=gnu17 -D_GNU_SOURCE -DBP_PORTABLE -ffp-contract=off -fno-math-errno -fno-trapping-math -Isrc -Wall -Wextra -Wshadow -ffunction-sections -fdata-sections -fvisibility=hidden -MMD -MP
 WASM_LDFLAGS := -O3 --no-entry -sSTANDALONE_WASM -sALLOW_MEMORY_GROWTH=1 -sERROR_ON_UNDEFINED_SYMBOLS=0
