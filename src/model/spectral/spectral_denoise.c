@@ -25,7 +25,7 @@ enum { LANES = 16 };
 
 static const float LAMBDA = 1.6f;           /* VARIANTS.md, "Noise" */
 static const double NORMAL_MEDIAN = 0.6745; /* of |x| for a standard normal x */
-static const float NOISE_LEAST = 0.004f;    /* in log2 units: below this sigma nothing is done */
+static const float NOISE_LEAST = 0.008f;    /* in log2 units: below this sigma nothing is done */
 
 struct noise {
 	float *scale;  /* per theta_d column of the finest bands */
