@@ -60,7 +60,7 @@ static void span_forward_is_the_sum_written_out(void **unused)
 		const uint32_t p = d.phi_d;
 		uint16_t *span = spans_of(d);
 		struct span_cosines *cosines = NULL;
-		assert_int_equal(span_cosines_create(d, span, false, &cosines, NULL), BP_OK);
+		assert_int_equal(span_cosines_create(d, span, d.phi_d, false, &cosines, NULL), BP_OK);
 		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
 			float row[1024], cells[1024];
 			const uint32_t s = span[r], first = (p - s) / 2;
@@ -106,9 +106,9 @@ static float *inverse_of(struct lattice_dims d, const float *spectrum, bool half
 	struct spectrum_rows *t = NULL;
 	uint32_t start[64];
 	assert_int_equal(spectrum_inverse_create(d, &inverse, NULL), BP_OK);
-	assert_int_equal(spectrum_rows_create(d, inverse, 1, half, &t, NULL), BP_OK);
+	assert_int_equal(spectrum_rows_create(inverse, d.phi_d, half, &t, NULL), BP_OK);
 	struct spectrum_term *terms = terms_of(inverse, spectrum, start);
-	spectrum_rows_field(t, 0, terms, start);
+	assert_int_equal(spectrum_rows_field(t, 0, terms, start, NULL), BP_OK);
 	for (uint32_t r = 0; r < rows; r += SPECTRUM_BLOCK) {
 		const uint32_t count = rows - r < SPECTRUM_BLOCK ? rows - r : SPECTRUM_BLOCK;
 		spectrum_rows_cells(t, 0, r, count, piece, 1024);

@@ -50,21 +50,26 @@ void spans_find(struct lattice_dims d, uint16_t *span)
 }
 
 /* The table of span n, of p cells; NULL where there is no memory. */
-static float *matrix_make(uint32_t n, uint32_t p, uint32_t parity, bool inverse)
+static float *matrix_make(uint32_t n, uint32_t p, uint32_t parity, uint32_t harmonics, bool inverse)
 {
-	const uint32_t count = parity ? n / 2 : (n + 1) / 2, stride = padded(count);
+	const uint32_t count = parity ? n / 2 : (n + 1) / 2, stride = padded(count), most = (harmonics + 1 - parity) / 2;
 	const double scale = inverse ? sqrt(2.0 / p) : sqrt(2.0 * p) / n; /* g sqrt(2/n), and sqrt(2/n) / g */
 	float *matrix = calloc((size_t)(count ? count * stride : 1), sizeof *matrix);
 	float *cosine = malloc(4 * (size_t)n * sizeof *cosine);
 
-	for (uint32_t a = 0; a < 4 * n && matrix && cosine; a++)
-		cosine[a] = (float)(scale * cosines_exact(a, n));
-	for (uint32_t k = 0; k < count && matrix && cosine; k++)
-		for (uint32_t r = 0; r < count; r++) {
-			const uint32_t m = 2 * r + parity;
-			const float x = m ? cosine[(uint64_t)m * (2 * k + 1) % (4 * n)] : (float)(scale * sqrt(0.5));
-			matrix[inverse ? (size_t)r * stride + k : (size_t)k * stride + r] = x;
+	for (uint32_t a = 0; a <= n && matrix && cosine; a++) {
+		const float x = (float)(scale * cosines_exact(a, n));
+		cosine[a] = cosine[(4 * n - a) % (4 * n)] = x;
+		cosine[2 * n - a] = cosine[2 * n + a] = -x;
+	}
+	for (uint32_t r = 0; r < count && r < most && matrix && cosine; r++) {
+		const uint32_t m = 2 * r + parity;
+		for (uint32_t k = 0, a = m; k < count; k++) {
+			matrix[inverse ? (size_t)r * stride + k : (size_t)k * stride + r] = m ? cosine[a] : (float)(scale * sqrt(0.5));
+			a += 2 * m;
+			a -= a >= 4 * n ? 4 * n : 0;
 		}
+	}
 	if (!cosine) {
 		free(matrix);
 		matrix = NULL;
@@ -73,8 +78,8 @@ static float *matrix_make(uint32_t n, uint32_t p, uint32_t parity, bool inverse)
 	return matrix;
 }
 
-bp_status span_cosines_create(struct lattice_dims d, const uint16_t *span, bool inverse, struct span_cosines **out,
-                              bp_error *error)
+bp_status span_cosines_create(struct lattice_dims d, const uint16_t *span, uint32_t harmonics, bool inverse,
+                              struct span_cosines **out, bp_error *error)
 {
 	const size_t bytes = sizeof(struct span_cosines) + ((size_t)d.phi_d + 1) * sizeof(struct table);
 	struct span_cosines *c = calloc(1, bytes);
@@ -86,7 +91,7 @@ bp_status span_cosines_create(struct lattice_dims d, const uint16_t *span, bool 
 	}
 	for (size_t r = 0; r < (size_t)d.theta_h * d.theta_d && good; r++)
 		for (uint32_t parity = 0; parity < 2 && !c->of[span[r]].matrix[parity] && good; parity++)
-			good = (c->of[span[r]].matrix[parity] = matrix_make(span[r], d.phi_d, parity, inverse)) != NULL;
+			good = (c->of[span[r]].matrix[parity] = matrix_make(span[r], d.phi_d, parity, harmonics, inverse)) != NULL;
 	if (!good) {
 		span_cosines_free(c);
 		return error_memory(error, bytes);
@@ -125,17 +130,17 @@ void span_forward(struct span_cosines *c, uint32_t n, float base, float *row)
 	memcpy(row + (p + 1) / 2, odd, half * sizeof *row);
 }
 
-void span_inverse(struct span_cosines *c, uint32_t n, const float *in, size_t in_stride, size_t rows, uint32_t even, uint32_t odd,
-                  float *out, size_t out_stride)
+void span_inverse(struct span_cosines *c, uint32_t n, const struct span_lanes *in, size_t rows, float *out, size_t out_stride)
 {
 	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const uint32_t half = n / 2, more = n - half, p = c->p, first = (p - n) / 2;
 	const size_t stride = padded(p);
 	float *sum = c->work, *difference = sum + SPAN_ROWS * stride;
 
-	kernels->cosine_product(in, in_stride, rows, even < more ? even : more, c->of[n].matrix[0], padded(more), sum, stride);
-	kernels->cosine_product(in + (p + 1) / 2, in_stride, rows, odd < half ? odd : half, c->of[n].matrix[1], padded(half),
-	                        difference, stride);
+	kernels->cosine_product(in->even, in->stride, rows, in->even_count < more ? in->even_count : more, c->of[n].matrix[0],
+	                        padded(more), sum, stride);
+	kernels->cosine_product(in->odd, in->stride, rows, in->odd_count < half ? in->odd_count : half, c->of[n].matrix[1],
+	                        padded(half), difference, stride);
 	for (size_t r = 0; r < rows; r++, sum += stride, difference += stride, out += out_stride) {
 		float *x = out + first;
 		for (uint32_t k = 0; k < half; k++) {

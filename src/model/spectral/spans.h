@@ -25,20 +25,26 @@ void spans_find(struct lattice_dims dims, uint16_t *span);
 /* The cosines of rows of every span in use. */
 struct span_cosines;
 
-/* inverse: for span_inverse, otherwise for span_forward. */
-bp_status span_cosines_create(struct lattice_dims dims, const uint16_t *span, bool inverse, struct span_cosines **out,
-                              bp_error *error);
+/* inverse: for span_inverse, otherwise for span_forward; harmonics: more are not worked with, P for all. */
+bp_status span_cosines_create(struct lattice_dims dims, const uint16_t *span, uint32_t harmonics, bool inverse,
+                              struct span_cosines **out, bp_error *error);
 void span_cosines_free(struct span_cosines *cosines); /* NULL is allowed */
 
 /* One row of n cells less `base`, in place of the row's P values: coefficients in the order of spectrum_lane(P, m), 0 from m = n on. */
 void span_forward(struct span_cosines *cosines, uint32_t n, float base, float *row);
 
+/* Coefficients of rows that stand `stride` apart: of even harmonics and of odd ones, and how many of either may differ from 0. */
+struct span_lanes {
+	const float *even, *odd;
+	size_t stride;
+	uint32_t even_count, odd_count;
+};
+
 /*
- * `rows` rows of span n, at most SPAN_ROWS, from coefficients in that order, `in_stride` apart: P values each, `out_stride` apart; cells
- * beyond the span get the value beside them. even, odd: how many coefficients of either kind may differ from 0.
+ * `rows` rows of span n, at most SPAN_ROWS: P values each, `out_stride` apart; cells beyond the span get the value beside them.
  */
 enum { SPAN_ROWS = 16 };
-void span_inverse(struct span_cosines *cosines, uint32_t n, const float *in, size_t in_stride, size_t rows, uint32_t even,
-                  uint32_t odd, float *out, size_t out_stride);
+void span_inverse(struct span_cosines *cosines, uint32_t n, const struct span_lanes *in, size_t rows, float *out,
+                  size_t out_stride);
 
 #endif

@@ -7,6 +7,16 @@
 #include "spectral_terms.h"
 #include "spectrum_rows.h"
 
+/* One more than the highest harmonic with a term. */
+static uint32_t harmonics_used(const struct spectral_terms *terms, uint32_t p)
+{
+	uint32_t most = 0;
+	for (uint32_t u = 0; u < 3 * p; u++)
+		if (terms->start[u + 1] > terms->start[u] && u % p >= most)
+			most = u % p + 1;
+	return most;
+}
+
 bp_status spectral_expand_rows(const struct spectral_model *model, uint32_t layers, bool half, spectral_block_fn *take,
                                void *user, bp_error *error)
 {
@@ -16,7 +26,7 @@ bp_status spectral_expand_rows(const struct spectral_model *model, uint32_t laye
 	struct spectrum_inverse *inverse = NULL;
 	struct spectrum_rows *rows = NULL;
 	struct spectral_terms terms = {0};
-	float *fields = malloc(3 * piece * sizeof *fields);
+	float *fields = calloc(3 * piece, sizeof *fields);
 	bp_status status = fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * piece * sizeof *fields);
 
 	if (!status)
@@ -24,9 +34,9 @@ bp_status spectral_expand_rows(const struct spectral_model *model, uint32_t laye
 	if (!status)
 		status = spectral_terms_make(model, inverse, layers, &terms, error);
 	if (!status)
-		status = spectrum_rows_create(d, inverse, 3, half, &rows, error);
+		status = spectrum_rows_create(inverse, harmonics_used(&terms, d.phi_d), half, &rows, error);
 	for (int f = 0; !status && f < 3; f++)
-		spectrum_rows_field(rows, f, terms.term, terms.start + (size_t)f * d.phi_d);
+		status = spectrum_rows_field(rows, f, terms.term, terms.start + (size_t)f * d.phi_d, error);
 	for (uint32_t r = 0; !status && r < count; r += SPECTRUM_BLOCK) {
 		const struct spectral_block block = {
 			.field = {fields, fields + piece, fields + 2 * piece},

@@ -50,7 +50,7 @@ static bp_status projection_create(struct lattice_dims d, const uint8_t weights[
 	bp_status status = spectrum_inverse_create(d, &out->inverse, error);
 	if (!status)
 		status = spectral_weights_apply(weights, out->inverse, error);
-	return status ? status : spectrum_rows_create(d, out->inverse, 1, false, &out->rows, error);
+	return status ? status : spectrum_rows_create(out->inverse, d.phi_d, false, &out->rows, error);
 }
 
 static void projection_free(struct projection *p)
@@ -79,7 +79,8 @@ static float size_of_rank(const float *coefficient, size_t cells, double count)
 }
 
 /* One step on one channel's table. */
-static void channel_project(const struct projection *p, const uint8_t *valid, float base, float threshold, float *table)
+static bp_status channel_project(const struct projection *p, const uint8_t *valid, float base, float threshold, float *table,
+                                 bp_error *error)
 {
 	const size_t lanes = p->dims.phi_d, rows = (size_t)p->dims.theta_h * p->dims.theta_d;
 	uint32_t n = 0;
@@ -92,14 +93,15 @@ static void channel_project(const struct projection *p, const uint8_t *valid, fl
 				p->term[n++] = spectrum_term_make(p->inverse, r, lane[r * lanes]);
 	}
 	p->start[lanes] = n;
-	spectrum_rows_field(p->rows, 0, p->term, p->start);
-	for (uint32_t r = 0; r < rows; r += SPECTRUM_BLOCK) {
+	const bp_status status = spectrum_rows_field(p->rows, 0, p->term, p->start, error);
+	for (uint32_t r = 0; !status && r < rows; r += SPECTRUM_BLOCK) {
 		const uint32_t count = rows - r < SPECTRUM_BLOCK ? (uint32_t)rows - r : SPECTRUM_BLOCK;
 		spectrum_rows_cells(p->rows, 0, r, count, p->cells, lanes);
 		for (size_t k = 0; k < count * lanes; k++)
 			if (!valid[r * lanes + k])
 				table[r * lanes + k] = p->cells[k] + base;
 	}
+	return status;
 }
 
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, const uint8_t *valid, const float base[3],
@@ -112,14 +114,14 @@ bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, con
 	bp_status status = projection_create(d, weights, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
 
 	for (int c = 0; !status && c < 3; c++)
-		for (int s = 0; s < steps; s++) {
+		for (int s = 0; !status && s < steps; s++) {
 			memcpy(p.spectrum, table[c], cells * sizeof(float));
 			spectrum_forward(spectrum, p.spectrum, base[c]);
 			spectral_weights_divide(d, p.factor, p.spectrum);
 			/* Four times the last threshold at first where there are steps enough. */
 			const float last = size_of_rank(p.spectrum, cells, wanted);
 			const double factor = steps > 1 ? fast_exp2(2.0 * (steps - 1 - s) / (steps - 1)) : 1;
-			channel_project(&p, valid, base[c], last * (float)factor, table[c]);
+			status = channel_project(&p, valid, base[c], last * (float)factor, table[c], error);
 		}
 	projection_free(&p);
 	return status;
