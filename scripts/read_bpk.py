@@ -657,7 +657,28 @@ def inverse_lift(x):
     return z
 
 
-SPECTRAL_KINDS = {(16, 0, 3), (17, 1, 2)}
+SPECTRAL_KINDS = {(16, 0, 3), (16, 0, 4), (17, 1, 2)}
+
+
+def spans(h, d, p):
+    """span[i][j]: how many cells of a row of phi_d are coded where rows are cut at the horizon."""
+    borders = [math.cos(math.pi * k / p) for k in range(p + 1)]
+    least = [0.0 if 2 * k <= p <= 2 * (k + 1) else min(abs(borders[k]), abs(borders[k + 1])) for k in range(p)]
+
+    def span(theta_h, theta_d):
+        a, b = math.cos(theta_h) * math.cos(theta_d), math.sin(theta_h) * math.sin(theta_d)
+        return sum(a - b * c > 2.0 ** -30 for c in least) or 2 - p % 2
+
+    return [[span((i / h) ** 2 * math.pi / 2, j / d * math.pi / 2) for j in range(d)] for i in range(h)]
+
+
+def cosine_basis(n, p):
+    """basis[m][k]: of a row of which n of p cells are coded; cells beyond them repeat the nearest."""
+    first = (p - n) // 2
+
+    def value(m, k):
+        return math.sqrt((2 if m else 1) / p) * math.cos(math.pi * m * (2 * k + 1) / (2 * n))
+    return [[value(m, min(max(k - first, 0), n - 1)) for k in range(p)] for m in range(n)]
 
 
 def weight_factors(hs, ds, weights):
@@ -682,6 +703,7 @@ def weight_factors(hs, ds, weights):
 def decode_spectral(record, layers):
     h, d, p = record.dims
     wanted = record.load_list(layers, SPECTRAL_KINDS)
+    cut = bool(wanted) and wanted[0][0][2] == 4
     demand([(s[0], s[3]) for s, _ in wanted] == [(16, 0)] + [(17, l) for l in range(layers)], "corrupt", record.base, "sections of fields and planes")
     data = wanted[0][1]
     demand(len(data) == 176, "corrupt", record.base, "the fields' bytes")
@@ -728,11 +750,13 @@ def decode_spectral(record, layers):
                 for y in range(rows):
                     plane[y][:columns] = inverse_lift(plane[y][:columns])
         fields.append(spectra)
-    basis = [[math.sqrt((2 if m else 1) / p) * math.cos(math.pi * m * (2 * k + 1) / (2 * p)) for k in range(p)] for m in range(p)]
+    span = spans(h, d, p) if cut else [[p] * d] * h
+    bases = {n: cosine_basis(n, p) for n in {n for row in span for n in row}}
     rgb, most = [[], [], []], min(40.0, 1011.0 - math.frexp(unit)[1])
     for i in range(h):
         for j in range(d):
-            lines = [[(s[m][i][j], basis[m]) for m in range(p) if s[m][i][j]] for s in fields]
+            basis = bases[span[i][j]]
+            lines = [[(s[m][i][j], line) for m, line in enumerate(basis) if s[m][i][j]] for s in fields]
             for k in range(p):
                 y = [sum(x * line[k] for x, line in terms) for terms in lines]
                 for c in range(3):

@@ -59,11 +59,15 @@ bp_status output_path_resolve(const char *path, char **out, bool *found, struct 
 	return BP_OK;
 }
 
+#define UNFINISHED ".brdfpack-"
+
 void output_path_stem(const char *target, char stem[OUTPUT_STEM_BYTES])
 {
 	const char *name = target + folder_bytes(target);
-	snprintf(stem, OUTPUT_STEM_BYTES, ".brdfpack-%08x-", bytes_crc32(name, strlen(name)));
+	snprintf(stem, OUTPUT_STEM_BYTES, UNFINISHED "%08x-", bytes_crc32(name, strlen(name)));
 }
+
+bool output_path_unfinished(const char *path) { return !strncmp(path + folder_bytes(path), UNFINISHED, sizeof UNFINISHED - 1); }
 
 int output_path_lock(int fd)
 {

@@ -22,6 +22,8 @@ char *output_path_folder(const char *target);
 /* What the names of files begin with that will become the target. */
 enum { OUTPUT_STEM_BYTES = 64 };
 void output_path_stem(const char *target, char stem[OUTPUT_STEM_BYTES]);
+/* Whether a path ends in such a name: nobody else's file. */
+bool output_path_unfinished(const char *path);
 
 /* Locks belong to the process, so they end with it and do not pass to forked workers. 0: the lock is ours. */
 int output_path_lock(int fd);

@@ -57,7 +57,7 @@ static void what_a_record_cannot_hold_becomes_less_and_valid_cells_stay(void **u
 	double rest[4];
 	(void)unused;
 
-	assert_int_equal(spectrum_create(DIMS, &spectrum, NULL), BP_OK);
+	assert_int_equal(spectrum_create(DIMS, true, &spectrum, NULL), BP_OK);
 	for (int steps = 0; steps < 4; steps++) {
 		for (size_t i = 0; i < cells; i++)
 			valid[i] = i / DIMS.phi_d % DIMS.theta_d < 24 && i % 7 != 3;
@@ -84,7 +84,7 @@ static void a_table_without_a_hole_is_left_alone(void **unused)
 	struct spectrum *spectrum = NULL;
 	(void)unused;
 
-	assert_int_equal(spectrum_create(DIMS, &spectrum, NULL), BP_OK);
+	assert_int_equal(spectrum_create(DIMS, true, &spectrum, NULL), BP_OK);
 	memset(valid, 1, cells);
 	for (int c = 0; c < 3; c++)
 		for (size_t i = 0; i < cells; i++)

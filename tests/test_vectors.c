@@ -91,6 +91,8 @@ static const struct vector VECTORS[] = {
 	{"good-spectral-layers", BP_OK, "The spectral profile, 17x15x7, two layers.", make_spectral_layers},
 	{"good-spectral-weights", BP_OK, "The spectral profile, 21x20x4: coded more coarsely where errors are worth less.",
      make_spectral_weights},
+	{"good-spectral-whole", BP_OK, "The spectral profile, 16x15x6, rows of phi_d that are not cut at the horizon.",
+     make_spectral_whole},
 	{"good-spectral-least", BP_OK, "The spectral profile, 4x4x4, complete.", make_spectral_least},
 	{"good-spectral-bright", BP_OK, "The spectral profile, values around 1e300.", make_spectral_bright},
 	{"good-spectral-dark", BP_OK, "The spectral profile, values around 1e-300.", make_spectral_dark},

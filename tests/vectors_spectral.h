@@ -26,11 +26,12 @@ FIXTURE void vector_lattice(struct lattice_dims d, double scale, struct lattice 
 	lattice_validate(out);
 }
 
-/* Fitted and encoded; the caller may change the sections before sections_join. Error figures are invented, as for the others. */
-FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, double scale, uint32_t budget,
+/* Fitted, with whole rows where there is an error bound, and encoded; the caller may change the sections before sections_join. Error
+ * figures are invented, as for the others. */
+FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, double scale, uint32_t budget, double max_error,
                                     struct record_head *head, struct section_list *sections)
 {
-	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = budget, .effort = 5};
+	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = budget, .max_error = max_error, .effort = 5};
 	const struct encode_request request = {.options = &options, .name_bytes = strlen(name), .record_bytes_max = budget};
 	struct model *model = NULL, *decoded = NULL;
 	struct lattice lattice;
@@ -64,7 +65,7 @@ FIXTURE void vector_spectral(const char *path, struct lattice_dims dims, double 
 {
 	struct record_head head;
 	struct section_list sections;
-	vector_spectral_encode("material", dims, scale, budget, &head, &sections);
+	vector_spectral_encode("material", dims, scale, budget, 0, &head, &sections);
 	vector_spectral_write(path, &head, &sections);
 }
 
@@ -81,7 +82,7 @@ static void make_spectral_layers(const char *path)
 {
 	struct record_head head;
 	struct section_list sections;
-	vector_spectral_encode("material", (struct lattice_dims){17, 15, 7}, 1, 6000, &head, &sections);
+	vector_spectral_encode("material", (struct lattice_dims){17, 15, 7}, 1, 6000, 0, &head, &sections);
 	assert_int_equal(head.layer_count, 2);
 	vector_spectral_write(path, &head, &sections);
 }
@@ -98,7 +99,7 @@ FIXTURE void vector_origin(const char *path, uint8_t kind)
 	                              .percentile95 = 0.125};
 	struct record_head head;
 	struct section_list sections;
-	vector_spectral_encode("material", (struct lattice_dims){4, 4, 4}, 1, 60400, &head, &sections);
+	vector_spectral_encode("material", (struct lattice_dims){4, 4, 4}, 1, 60400, 0, &head, &sections);
 	assert_true(record_origin_add(&sections, &origin));
 	sections.bytes[0].bytes[0] = kind;
 	vector_spectral_write(path, &head, &sections);
@@ -107,12 +108,21 @@ FIXTURE void vector_origin(const char *path, uint8_t kind)
 static void make_origin(const char *path) { vector_origin(path, ORIGIN_RGL_SPECTRA); }
 static void make_origin_kind(const char *path) { vector_origin(path, 4); }
 
+/* Rows of phi_d are not cut: an error bound is a promise about all measured values. */
+static void make_spectral_whole(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_spectral_encode("material", (struct lattice_dims){16, 15, 6}, 1, 1500, 0.0625, &head, &sections);
+	vector_spectral_write(path, &head, &sections);
+}
+
 /* One number of a section changed, under a checksum that holds. */
 FIXTURE void vector_spectral_changed(const char *path, int section, size_t at, uint32_t value)
 {
 	struct record_head head;
 	struct section_list sections;
-	vector_spectral_encode("material", (struct lattice_dims){4, 4, 4}, 1, 60400, &head, &sections);
+	vector_spectral_encode("material", (struct lattice_dims){4, 4, 4}, 1, 60400, 0, &head, &sections);
 	store_u32(sections.bytes[section].bytes + at, value);
 	vector_spectral_write(path, &head, &sections);
 }

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "memory.h"
+#include "output_path.h"
 #include "source_names.h"
 
 enum { DEPTH_MAX = 1000 };
@@ -265,6 +266,8 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 			       "as large as a MERL file, but not called NAME.binary; rename it, or name it on the command line");
 		break;
 	}
+	if (output_path_unfinished(path))
+		return BP_OK;
 	list->ignored_count++;
 	licences_note(&list->licences, path, NULL);
 	return BP_OK;

@@ -14,12 +14,14 @@ enum {
 	CODEC_FIELDS = 0,
 	CODEC_PLANES = 1,
 	FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 + SPECTRAL_WEIGHTS,
-	FIELDS_VERSION = 3,
+	FIELDS_VERSION = 3,     /* rows of phi_d are whole */
+	FIELDS_VERSION_CUT = 4, /* they are cut at the horizon: spans.h */
 	PLANES_VERSION = 2
 };
 
 static const struct section_kind KINDS[] = {
 	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION},
+	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_CUT},
 	{SECTION_PLANES, CODEC_PLANES, PLANES_VERSION},
 };
 
@@ -31,7 +33,8 @@ enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
 static void fields_write(const struct encoding *e, struct section_list *sections)
 {
-	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION, 0, SECTION_REQUIRED, NAN);
+	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS,
+	                                      e->model->cut ? FIELDS_VERSION_CUT : FIELDS_VERSION, 0, SECTION_REQUIRED, NAN);
 	write_f64(out, e->model->unit);
 	for (int c = 0; c < 3; c++)
 		write_f32(out, e->model->base[c]);
@@ -62,6 +65,7 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	copy->spectral = decoded;
 	decoded->dims = e->model->dims;
 	decoded->unit = e->model->unit;
+	decoded->cut = e->model->cut;
 	memcpy(decoded->base, e->model->base, sizeof decoded->base);
 	memcpy(decoded->rotation, e->model->rotation, sizeof decoded->rotation);
 	memcpy(decoded->weights, e->model->weights, sizeof decoded->weights);
@@ -126,6 +130,7 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 	if (section->entry->bytes != FIELDS_BYTES)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %d", section->entry->bytes,
 		                 FIELDS_BYTES);
+	model->cut = section->entry->version == FIELDS_VERSION_CUT;
 	model->unit = read_f64(&in);
 	for (int c = 0; c < 3; c++)
 		model->base[c] = read_f32(&in);
@@ -215,7 +220,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 
 const struct profile_codec SPECTRAL_CODEC = {
 	.profile = PROFILE_SPECTRAL,
-	.version = 4,
+	.version = 5,
 	.kinds = KINDS,
 	.kind_count = sizeof KINDS / sizeof *KINDS,
 	.decode = spectral_decode,

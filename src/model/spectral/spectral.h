@@ -49,6 +49,7 @@ struct spectral_model {
 	float rotation[3][3];              /* orthonormal */
 	uint8_t weights[SPECTRAL_WEIGHTS]; /* spectral_weights.h */
 	float *coefficient[3]; /* fitted: spectra of the three fields, divided by the weights' factors; NULL when decoded */
+	bool cut;              /* rows of phi_d are cut at the horizon: spans.h */
 	bool noisy;            /* fitted: noise was found and drawn towards 0 */
 
 	float step; /* decoded, as all that follows */
@@ -82,12 +83,12 @@ uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end
 /* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
 float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest);
 
-/* spectral_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. */
-bp_status spectral_denoise(struct lattice_dims dims, float *coefficient, bool *noisy, bp_error *error);
+/* spectral_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. span: of the rows (spans.h), or NULL. */
+bp_status spectral_denoise(struct lattice_dims dims, const uint16_t *span, float *coefficient, bool *noisy, bp_error *error);
 
 /*
  * spectral_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of
- * about so many bytes with such weights.
+ * about so many bytes with such weights. The spectrum's rows are cut.
  */
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3],
                            const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3],

@@ -6,13 +6,15 @@
  * The noise is estimated from the table itself, by medians of the finest diagonal band, in which smooth materials
  * have next to nothing: sigma = scale(theta_d) * factor(harmonic). theta_d, because measurements grow noisy towards
  * grazing angles; harmonics, because faults that are constant along phi_d are in the first one only. An orthonormal transform
- * spreads white noise evenly over its bands, so the estimate serves all of them.
+ * spreads white noise evenly over its bands, so the estimate serves all of them. It is made where rows are whole: what is cut has
+ * fewer coefficients, and its noise is that of grazing light.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
+#include "spans.h"
 #include "spectral.h"
 #include "model/math/fast_math.h"
 #include "spectral_kernels.h"
@@ -21,9 +23,9 @@
 
 enum { LANES = 16 };
 
-static const float LAMBDA = 4;
+static const float LAMBDA = 1.6f;           /* VARIANTS.md, "Noise" */
 static const double NORMAL_MEDIAN = 0.6745; /* of |x| for a standard normal x */
-static const float NOISE_LEAST = 0.004f;    /* in log2 units: below this sigma nothing is done */
+static const float NOISE_LEAST = 0.008f;    /* in log2 units: below this sigma nothing is done */
 
 struct noise {
 	float *scale;  /* per theta_d column of the finest bands */
@@ -49,9 +51,15 @@ static double median(const float *size, size_t n, double *few)
 	return select_kth(few, kept, n / 2 - below);
 }
 
+/* Is the row in whose middle the detail (y, x) of the finest diagonal band lies a whole one? span: NULL where all are. */
+static bool detail_whole(struct lattice_dims d, const uint16_t *span, uint32_t y, uint32_t x)
+{
+	return !span || span[(2 * y + 1) * d.theta_d + 2 * x + 1] == d.phi_d;
+}
+
 /* The scale of every column, from a quarter of its coefficients of the higher harmonics. */
-static void scale_estimate(struct lattice_dims d, const float *band, uint32_t rows, uint32_t columns, float *sample, double *few,
-                           float *scale)
+static void scale_estimate(struct lattice_dims d, const uint16_t *span, const float *band, uint32_t rows, uint32_t columns,
+                           float *sample, double *few, float *scale)
 {
 	const uint32_t lanes = d.phi_d, even = (lanes + 1) / 2, low = even / 5; /* lanes low.. of either kind */
 
@@ -59,6 +67,8 @@ static void scale_estimate(struct lattice_dims d, const float *band, uint32_t ro
 		size_t n = 0;
 		for (uint32_t y = 0; y < rows; y++) {
 			const float *row = band + ((size_t)y * d.theta_d + x) * lanes;
+			if (!detail_whole(d, span, y, x))
+				continue;
 			for (uint32_t q = (4 - y % 4) % 4; q < lanes; q += 4)
 				if ((q < even ? q : q - even) >= low)
 					sample[n++] = fabsf(row[q]);
@@ -68,8 +78,8 @@ static void scale_estimate(struct lattice_dims d, const float *band, uint32_t ro
 }
 
 /* The factor of every lane, from every second of its coefficients; LANES lanes at a time, which stand side by side in memory. */
-static void factor_estimate(struct lattice_dims d, const float *band, uint32_t rows, uint32_t columns, float *sample, double *few,
-                            struct noise *noise)
+static void factor_estimate(struct lattice_dims d, const uint16_t *span, const float *band, uint32_t rows, uint32_t columns,
+                            float *sample, double *few, struct noise *noise)
 {
 	const size_t room = (size_t)rows * columns;
 
@@ -79,6 +89,8 @@ static void factor_estimate(struct lattice_dims d, const float *band, uint32_t r
 		for (uint32_t y = 0; y < rows; y++)
 			for (uint32_t x = 0; x < columns; x++) {
 				const float *row = band + ((size_t)y * d.theta_d + x) * d.phi_d + q0, per = 1 / noise->scale[x];
+				if (!detail_whole(d, span, y, x))
+					continue;
 				for (uint32_t q = (x + y + q0) % 2; q < count; q += 2)
 					sample[q * room + n[q]++] = fabsf(row[q]) * per;
 			}
@@ -88,7 +100,8 @@ static void factor_estimate(struct lattice_dims d, const float *band, uint32_t r
 }
 
 /* False where there is so little noise that nothing is done. */
-static bp_status noise_estimate(struct lattice_dims d, const float *c, struct noise *noise, bool *noisy, bp_error *error)
+static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, const float *c, struct noise *noise, bool *noisy,
+                                bp_error *error)
 {
 	const uint32_t rows = d.theta_h / 2, columns = d.theta_d / 2;
 	const float *band = c + ((size_t)(d.theta_h - rows) * d.theta_d + d.theta_d - columns) * d.phi_d;
@@ -101,12 +114,12 @@ static bp_status noise_estimate(struct lattice_dims d, const float *c, struct no
 		free(few);
 		return error_memory(error, room * sizeof *few);
 	}
-	scale_estimate(d, band, rows, columns, sample, few, noise->scale);
+	scale_estimate(d, span, band, rows, columns, sample, few, noise->scale);
 	for (uint32_t x = 0; x < columns; x++)
 		largest = noise->scale[x] > largest ? noise->scale[x] : largest;
 	*noisy = largest >= NOISE_LEAST;
 	if (*noisy)
-		factor_estimate(d, band, rows, columns, sample, few, noise);
+		factor_estimate(d, span, band, rows, columns, sample, few, noise);
 	free(sample);
 	free(few);
 	return BP_OK;
@@ -171,7 +184,7 @@ static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, 
 	}
 }
 
-bp_status spectral_denoise(struct lattice_dims d, float *coefficient, bool *noisy, bp_error *error)
+bp_status spectral_denoise(struct lattice_dims d, const uint16_t *span, float *coefficient, bool *noisy, bp_error *error)
 {
 	struct noise noise = {calloc(d.theta_d, sizeof(float)), calloc(d.phi_d, sizeof(float))};
 	struct squares squares = {0};
@@ -180,7 +193,7 @@ bp_status spectral_denoise(struct lattice_dims d, float *coefficient, bool *nois
 
 	if (status || !spectrum_levels(d.theta_h, d.theta_d))
 		goto out;
-	status = noise_estimate(d, coefficient, &noise, &here, error);
+	status = noise_estimate(d, span, coefficient, &noise, &here, error);
 	if (status || !here)
 		goto out;
 	status = squares_alloc(d, &squares, error);

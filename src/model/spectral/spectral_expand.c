@@ -48,6 +48,14 @@ bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t la
 	return status;
 }
 
+static bp_status expand(const struct spectral_model *model, uint32_t layers, bool half, spectral_block_fn *take, void *user,
+                        bp_error *error)
+{
+	if (model->cut)
+		return spectral_expand_rows(model, layers, half, take, user, error);
+	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, take, user, error);
+}
+
 struct values_target {
 	const struct spectral_model *model;
 	const struct expansion *out;
@@ -68,7 +76,7 @@ bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, s
 {
 	struct values_target target = {model, out};
 	out->unit = model->unit;
-	return spectral_expand_blocks(model, layers, values_take, &target, error);
+	return expand(model, layers, false, values_take, &target, error);
 }
 
 struct codes_target {
@@ -93,12 +101,12 @@ bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t lay
                                 size_t stride, bp_error *error)
 {
 	struct codes_target target = {model, channels, out, stride};
-	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, codes_take, &target, error);
+	return expand(model, layers, half, codes_take, &target, error);
 }
 
 bp_status spectral_expand_half(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error)
 {
 	struct values_target target = {model, out};
 	out->unit = model->unit;
-	return spectral_expand_half_blocks(model, layers, values_take, &target, error);
+	return expand(model, layers, true, values_take, &target, error);
 }

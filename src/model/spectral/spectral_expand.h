@@ -18,6 +18,9 @@ typedef void spectral_block_fn(void *user, const struct spectral_block *block);
 /* Every cell once, in blocks of SPECTRUM_BLOCK cells of all rows. */
 bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user,
                                  bp_error *error);
+/* Likewise where rows are cut: all, or the table of every second value, in whole rows in their order. */
+bp_status spectral_expand_rows(const struct spectral_model *model, uint32_t layers, bool half, spectral_block_fn *take,
+                               void *user, bp_error *error);
 /* The table of every second value, whole rows in their order. The model's extents must be even; decoded models only. */
 bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user,
                                       bp_error *error);

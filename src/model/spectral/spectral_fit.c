@@ -1,7 +1,7 @@
 /*
  * spectral_fit.c: a measured lattice becomes the spectra of three fields.
  *
- *     logarithms -> fill -> spectrum, per channel -> rotation to the channels' principal axes -> noise drawn towards 0 -> weights
+ *     logarithms -> fill -> spectrum, rows cut at the horizon, per channel -> rotation to the channels' principal axes -> noise drawn towards 0 -> weights
  *
  * and, beside it, the paper's colour regression on the measured achromatic table.
  *
@@ -142,8 +142,8 @@ static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const
 }
 
 /* Spectra of channels become those of fields. */
-static bp_status fields_make(struct lattice_dims d, const int order[3], const float rotation[3][3], bool denoise,
-                             const struct watch *watch, struct spectral_model *fitted, bp_error *error)
+static bp_status fields_make(struct lattice_dims d, const uint16_t *span, const int order[3], const float rotation[3][3],
+                             bool denoise, const struct watch *watch, struct spectral_model *fitted, bp_error *error)
 {
 	const size_t rows = (size_t)d.theta_h * d.theta_d;
 	bp_status status = BP_OK;
@@ -159,7 +159,7 @@ static bp_status fields_make(struct lattice_dims d, const int order[3], const fl
 	stage_enter(STAGE_CLEAN);
 	for (int f = 0; !status && f < 3 && denoise; f++) {
 		status = watch_tell(watch, 0.4 + 0.05 * f, error);
-		status = status ? status : spectral_denoise(d, fitted->coefficient[f], &fitted->noisy, error);
+		status = status ? status : spectral_denoise(d, span, fitted->coefficient[f], &fitted->noisy, error);
 	}
 	return status;
 }
@@ -185,7 +185,8 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 	if (status)
 		return status;
 	spectra_make(lattice->dims, spectrum, order, fitted, rotation);
-	return fields_make(lattice->dims, order, (const float(*)[3])rotation, true, options->watch, fitted, error);
+	return fields_make(lattice->dims, spectrum_spans(spectrum), order, (const float(*)[3])rotation, true, options->watch, fitted,
+	                   error);
 }
 
 /* The last step: coefficients as they are quantised. */
@@ -210,7 +211,8 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	const struct lattice_dims d = lattice->dims;
 	const size_t cells = lattice_cells(d);
 	/* An error bound is a promise about all measured values, their noise included. */
-	const bool bound = options->max_error > 0, denoise = !bound, project = denoise && PROJECTIONS[options->effort] > 0;
+	const bool bound = options->max_error > 0, denoise = !bound;
+	bool project = denoise && PROJECTIONS[options->effort] > 0;
 	struct spectral_model *fitted = calloc(1, sizeof *fitted);
 	struct spectrum *spectrum = NULL;
 	struct spectral_survey sample = {0};
@@ -239,15 +241,18 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	if (!status) {
 		spectral_survey_order(&sample, order);
 		fitted->unit = spectral_survey_unit(&sample, lattice);
-		status = spectrum_create(d, &spectrum, error);
 	}
 	spectral_survey_free(&sample);
 	if (!status)
 		status = watch_tell(options->watch, 0.1, error);
 	if (!status && !bound) {
 		status = seen_cells(lattice, &seen, &counted, error);
+		fitted->cut = seen.valid == counted;
+		project = project && fitted->cut;
 		spectral_weights_find(&seen, fitted->unit, fitted->weights);
 	}
+	if (!status)
+		status = spectrum_create(d, fitted->cut, &spectrum, error);
 	if (!status)
 		status = logs_make(&seen, order, fitted, error);
 	if (!status && project) {
@@ -262,7 +267,8 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	if (!status)
 		spectra_make(d, spectrum, order, fitted, rotation);
 	if (!status)
-		status = fields_make(d, order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
+		status =
+			fields_make(d, spectrum_spans(spectrum), order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
 	if (!status && project && !fitted->noisy && seen.valid_count < cells)
 		status = fields_improve(&seen, options, spectrum, order, filled, fitted, error);
 	/* Where noise is drawn towards 0, even steps do as well by what is under it (VARIANTS.md). */

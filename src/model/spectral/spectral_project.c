@@ -13,7 +13,7 @@
 #include "memory.h"
 #include "spectral.h"
 #include "model/math/fast_math.h"
-#include "spectrum_inverse.h"
+#include "spectrum_rows.h"
 
 enum {
 	BIN_SHIFT = 19, /* of a float's bits: 16 bins to the octave */
@@ -26,7 +26,8 @@ struct projection {
 	struct spectrum_inverse *inverse;
 	float *factor;   /* of the weights, by row */
 	float *spectrum; /* of one channel, which are much alike */
-	float *plane;
+	struct spectrum_rows *rows;
+	float *cells; /* of some rows */
 	struct spectrum_term *term;
 	uint32_t *start;
 	uint32_t room; /* terms */
@@ -40,21 +41,24 @@ static bp_status projection_create(struct lattice_dims d, const uint8_t weights[
 	*out = (struct projection){.dims = d, .room = room};
 	out->factor = malloc(rows * sizeof(float));
 	out->spectrum = memory_alloc(cells * sizeof(float));
-	out->plane = memory_alloc(rows * SPECTRUM_BLOCK * sizeof(float));
+	out->cells = malloc(SPECTRUM_BLOCK * (size_t)d.phi_d * sizeof(float));
 	out->term = malloc(((size_t)room + 1) * sizeof *out->term);
 	out->start = malloc(((size_t)d.phi_d + 1) * sizeof *out->start);
-	if (!out->factor || !out->spectrum || !out->plane || !out->term || !out->start)
+	if (!out->factor || !out->spectrum || !out->cells || !out->term || !out->start)
 		return error_memory(error, cells * sizeof(float));
 	spectral_weights_factors(d, weights, out->factor);
 	bp_status status = spectrum_inverse_create(d, &out->inverse, error);
-	return status ? status : spectral_weights_apply(weights, out->inverse, error);
+	if (!status)
+		status = spectral_weights_apply(weights, out->inverse, error);
+	return status ? status : spectrum_rows_create(out->inverse, d.phi_d, false, &out->rows, error);
 }
 
 static void projection_free(struct projection *p)
 {
 	free(p->factor);
 	free(p->spectrum);
-	free(p->plane);
+	free(p->cells);
+	spectrum_rows_free(p->rows);
 	free(p->term);
 	free(p->start);
 	spectrum_inverse_free(p->inverse);
@@ -75,7 +79,8 @@ static float size_of_rank(const float *coefficient, size_t cells, double count)
 }
 
 /* One step on one channel's table. */
-static void channel_project(const struct projection *p, const uint8_t *valid, float base, float threshold, float *table)
+static bp_status channel_project(const struct projection *p, const uint8_t *valid, float base, float threshold, float *table,
+                                 bp_error *error)
 {
 	const size_t lanes = p->dims.phi_d, rows = (size_t)p->dims.theta_h * p->dims.theta_d;
 	uint32_t n = 0;
@@ -88,14 +93,15 @@ static void channel_project(const struct projection *p, const uint8_t *valid, fl
 				p->term[n++] = spectrum_term_make(p->inverse, r, lane[r * lanes]);
 	}
 	p->start[lanes] = n;
-	for (uint32_t k = 0; k < lanes; k += SPECTRUM_BLOCK) {
-		const size_t width = lanes - k < SPECTRUM_BLOCK ? lanes - k : SPECTRUM_BLOCK;
-		spectrum_inverse_block(p->inverse, p->term, p->start, k, p->plane);
-		for (size_t r = 0; r < rows; r++)
-			for (size_t q = 0; q < width; q++)
-				if (!valid[r * lanes + k + q])
-					table[r * lanes + k + q] = p->plane[r * SPECTRUM_BLOCK + q] + base;
+	const bp_status status = spectrum_rows_field(p->rows, 0, p->term, p->start, error);
+	for (uint32_t r = 0; !status && r < rows; r += SPECTRUM_BLOCK) {
+		const uint32_t count = rows - r < SPECTRUM_BLOCK ? (uint32_t)rows - r : SPECTRUM_BLOCK;
+		spectrum_rows_cells(p->rows, 0, r, count, p->cells, lanes);
+		for (size_t k = 0; k < count * lanes; k++)
+			if (!valid[r * lanes + k])
+				table[r * lanes + k] = p->cells[k] + base;
 	}
+	return status;
 }
 
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, const uint8_t *valid, const float base[3],
@@ -108,14 +114,14 @@ bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, con
 	bp_status status = projection_create(d, weights, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
 
 	for (int c = 0; !status && c < 3; c++)
-		for (int s = 0; s < steps; s++) {
+		for (int s = 0; !status && s < steps; s++) {
 			memcpy(p.spectrum, table[c], cells * sizeof(float));
 			spectrum_forward(spectrum, p.spectrum, base[c]);
 			spectral_weights_divide(d, p.factor, p.spectrum);
 			/* Four times the last threshold at first where there are steps enough. */
 			const float last = size_of_rank(p.spectrum, cells, wanted);
 			const double factor = steps > 1 ? fast_exp2(2.0 * (steps - 1 - s) / (steps - 1)) : 1;
-			channel_project(&p, valid, base[c], last * (float)factor, table[c]);
+			status = channel_project(&p, valid, base[c], last * (float)factor, table[c], error);
 		}
 	projection_free(&p);
 	return status;

@@ -11,8 +11,8 @@ enum { EDGE = SPECTRAL_WEIGHTS_EDGE, LEAST_CELLS = 2 * EDGE, PER_OCTAVE = 8, BIN
 
 /* Figures that were found by trial: VARIANTS.md, "What errors are worth". */
 static const double PICTURE = 0.95;  /* share of the picture in an error's worth; the rest is the error of the logarithm itself */
-static const double STEEPNESS = 0.8; /* 1: least for the picture; less: safer for uses that are not this one */
-static const double LEAST = 0.05;    /* of the mean worth, even where nothing is seen */
+static const double STEEPNESS = 1.2; /* 1: least by this worth, which is smoother than a picture's; less: safer for other uses */
+static const double LEAST = 0.02;    /* of the mean worth, even where nothing is seen */
 static const double EXPOSURE = 7;    /* white, where the 90 % point of value times cosine is 1: that of a sphere, within a half */
 static const double AMBIENT = 0.3;   /* of white: what else a pixel holds */
 static const struct spectral_light LIGHTS[] = {

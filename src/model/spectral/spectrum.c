@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "cosines.h"
+#include "spans.h"
 #include "spectral_kernels.h"
 
 struct spectrum {
@@ -11,6 +12,8 @@ struct spectrum {
 	uint32_t levels;
 	struct cosines *cosines;
 	float *scratch; /* for the wavelets */
+	uint16_t *span; /* NULL: rows are whole */
+	struct span_cosines *cut;
 };
 
 uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
@@ -23,7 +26,7 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
 	return levels;
 }
 
-bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_error *error)
+bp_status spectrum_create(struct lattice_dims dims, bool cut, struct spectrum **out, bp_error *error)
 {
 	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d;
 	struct spectrum *t = calloc(1, sizeof *t);
@@ -35,6 +38,14 @@ bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_er
 	t->scratch = malloc(12 * longest * sizeof(float));
 	bp_status status =
 		t->scratch ? cosines_create(dims.phi_d, &t->cosines, error) : error_memory(error, 12 * longest * sizeof(float));
+	if (!status && cut) {
+		t->span = malloc((size_t)dims.theta_h * dims.theta_d * sizeof *t->span);
+		status = t->span ? BP_OK : error_memory(error, (size_t)dims.theta_h * dims.theta_d * sizeof *t->span);
+		if (!status) {
+			spans_find(dims, t->span);
+			status = span_cosines_create(dims, t->span, dims.phi_d, false, &t->cut, error);
+		}
+	}
 	if (status)
 		spectrum_free(t);
 	else
@@ -47,8 +58,27 @@ void spectrum_free(struct spectrum *t)
 	if (!t)
 		return;
 	cosines_free(t->cosines);
+	span_cosines_free(t->cut);
+	free(t->span);
 	free(t->scratch);
 	free(t);
+}
+
+const uint16_t *spectrum_spans(const struct spectrum *t) { return t->span; }
+
+/* The cosines along all rows of phi_d: runs of whole rows at once, those that are cut one by one. */
+static void rows_forward(struct spectrum *t, float *table, float base)
+{
+	const size_t p = t->dims.phi_d, rows = (size_t)t->dims.theta_h * t->dims.theta_d;
+
+	for (size_t r = 0, run; r < rows; r += run) {
+		run = 0;
+		while (r + run < rows && (!t->span || t->span[r + run] == p))
+			run++;
+		cosines_forward(t->cosines, table + r * p, run, base);
+		for (; r + run < rows && t->span[r + run] < p; run++)
+			span_forward(t->cut, t->span[r + run], base, table + (r + run) * p);
+	}
 }
 
 void spectrum_forward(struct spectrum *t, float *table, float base)
@@ -57,7 +87,7 @@ void spectrum_forward(struct spectrum *t, float *table, float base)
 	const size_t p = t->dims.phi_d, slice = t->dims.theta_d * p;
 	size_t rows = t->dims.theta_h, columns = t->dims.theta_d;
 
-	cosines_forward(t->cosines, table, rows * columns, base);
+	rows_forward(t, table, base);
 	for (uint32_t l = 0; l < t->levels; l++) {
 		for (size_t i = 0; i < rows; i++)
 			kernels->cdf97_forward(table + i * slice, columns, p, p, t->scratch);

@@ -24,8 +24,12 @@ enum { SPECTRUM_LEVELS_MAX = 7 };
 
 struct spectrum; /* tables and scratch for tables of one size; one thread at a time */
 
-bp_status spectrum_create(struct lattice_dims dims, struct spectrum **out, bp_error *error);
+/* cut: rows of phi_d are cut at the horizon (spans.h); their harmonics are those of their spans. */
+bp_status spectrum_create(struct lattice_dims dims, bool cut, struct spectrum **out, bp_error *error);
 void spectrum_free(struct spectrum *spectrum); /* NULL is allowed */
+
+/* The rows' spans (spans.h), [theta_h theta_d]; NULL where they are whole. The spectrum's own. */
+const uint16_t *spectrum_spans(const struct spectrum *spectrum);
 
 /* Levels of the wavelet: as long as the shorter axis keeps at least 8 coarse cells, each level halving it (rounding up). */
 uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d);
@@ -44,7 +48,7 @@ static inline uint32_t spectrum_harmonic(uint32_t phi_d, uint32_t lane)
 	return lane < even ? 2 * lane : 2 * (lane - even) + 1;
 }
 
-/* Of table - base, in place. The inverse: spectrum_inverse.h. */
+/* Of table - base, in place. The inverse: spectrum_inverse.h; where rows are cut, spectrum_rows.h. */
 void spectrum_forward(struct spectrum *spectrum, float *table, float base);
 
 #endif

@@ -1,0 +1,157 @@
+/* spans.c: see spans.h. A row is folded about its middle: even harmonics come from the sums, odd ones from the differences. */
+#include "spans.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cosines.h"
+#include "error.h"
+#include "spectral_kernels.h"
+
+enum { COLUMNS = 16 }; /* cosine_product works on so many at once */
+
+/* Of one span: cosines of even and of odd harmonics, [k][harmonic] forward, [harmonic][k] inverse, columns padded with zeros. */
+struct table {
+	float *matrix[2];
+};
+
+struct span_cosines {
+	uint32_t p;
+	float *work; /* even and odd halves, SPAN_ROWS of them */
+	struct table of[];
+};
+
+static uint32_t padded(uint32_t columns) { return (columns + COLUMNS - 1) / COLUMNS * COLUMNS; }
+
+void spans_find(struct lattice_dims d, uint16_t *span)
+{
+	const uint32_t half = (d.phi_d + 1) / 2;
+	double least[LATTICE_EXTENT_MAX], sine;
+
+	/* |cos phi_d| at its least in cell k of the first half: at its end, where it is not the middle one of an odd number. */
+	for (uint32_t k = 0; k < half; k++)
+		quarter_cos_sin(2 * (k + 1) <= d.phi_d ? 2.0 * (k + 1) / d.phi_d : 1, &least[k], &sine);
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		for (uint32_t j = 0; j < d.theta_d; j++) {
+			double cos_h, sin_h, cos_d, sin_d;
+			uint32_t low = 0, high = half; /* the first that can be seen lies between them; none can where it is `half` */
+			quarter_cos_sin((double)i / d.theta_h * ((double)i / d.theta_h), &cos_h, &sin_h);
+			quarter_cos_sin((double)j / d.theta_d, &cos_d, &sin_d);
+			while (low < high) {
+				const uint32_t k = (low + high) / 2;
+				if (cos_h * cos_d - sin_h * sin_d * least[k] > SPAN_MARGIN)
+					high = k;
+				else
+					low = k + 1;
+			}
+			*span++ = (uint16_t)(low < half ? d.phi_d - 2 * low : 2 - d.phi_d % 2);
+		}
+}
+
+/* The table of span n, of p cells; NULL where there is no memory. */
+static float *matrix_make(uint32_t n, uint32_t p, uint32_t parity, uint32_t harmonics, bool inverse)
+{
+	const uint32_t count = parity ? n / 2 : (n + 1) / 2, stride = padded(count), most = (harmonics + 1 - parity) / 2;
+	const double scale = inverse ? sqrt(2.0 / p) : sqrt(2.0 * p) / n; /* g sqrt(2/n), and sqrt(2/n) / g */
+	float *matrix = calloc((size_t)(count ? count * stride : 1), sizeof *matrix);
+	float *cosine = malloc(4 * (size_t)n * sizeof *cosine);
+
+	for (uint32_t a = 0; a <= n && matrix && cosine; a++) {
+		const float x = (float)(scale * cosines_exact(a, n));
+		cosine[a] = cosine[(4 * n - a) % (4 * n)] = x;
+		cosine[2 * n - a] = cosine[2 * n + a] = -x;
+	}
+	for (uint32_t r = 0; r < count && r < most && matrix && cosine; r++) {
+		const uint32_t m = 2 * r + parity;
+		for (uint32_t k = 0, a = m; k < count; k++) {
+			matrix[inverse ? (size_t)r * stride + k : (size_t)k * stride + r] = m ? cosine[a] : (float)(scale * sqrt(0.5));
+			a += 2 * m;
+			a -= a >= 4 * n ? 4 * n : 0;
+		}
+	}
+	if (!cosine) {
+		free(matrix);
+		matrix = NULL;
+	}
+	free(cosine);
+	return matrix;
+}
+
+bp_status span_cosines_create(struct lattice_dims d, const uint16_t *span, uint32_t harmonics, bool inverse,
+                              struct span_cosines **out, bp_error *error)
+{
+	const size_t bytes = sizeof(struct span_cosines) + ((size_t)d.phi_d + 1) * sizeof(struct table);
+	struct span_cosines *c = calloc(1, bytes);
+	bool good = c != NULL;
+
+	if (c) {
+		c->p = d.phi_d;
+		good = (c->work = malloc(4 * (size_t)padded(d.phi_d) * SPAN_ROWS * sizeof *c->work)) != NULL;
+	}
+	for (size_t r = 0; r < (size_t)d.theta_h * d.theta_d && good; r++)
+		for (uint32_t parity = 0; parity < 2 && !c->of[span[r]].matrix[parity] && good; parity++)
+			good = (c->of[span[r]].matrix[parity] = matrix_make(span[r], d.phi_d, parity, harmonics, inverse)) != NULL;
+	if (!good) {
+		span_cosines_free(c);
+		return error_memory(error, bytes);
+	}
+	*out = c;
+	return BP_OK;
+}
+
+void span_cosines_free(struct span_cosines *c)
+{
+	for (uint32_t n = 0; c && n <= c->p; n++)
+		for (int parity = 0; parity < 2; parity++)
+			free(c->of[n].matrix[parity]);
+	if (c)
+		free(c->work);
+	free(c);
+}
+
+void span_forward(struct span_cosines *c, uint32_t n, float base, float *row)
+{
+	const struct spectral_kernels *kernels = spectral_kernels_get();
+	const uint32_t half = n / 2, more = n - half, p = c->p;
+	const float *x = row + (p - n) / 2;
+	float *sum = c->work, *difference = sum + padded(p), *even = difference + padded(p), *odd = even + padded(p);
+
+	for (uint32_t k = 0; k < half; k++) {
+		sum[k] = x[k] + x[n - 1 - k] - 2 * base;
+		difference[k] = x[k] - x[n - 1 - k];
+	}
+	if (more > half)
+		sum[half] = x[half] - base;
+	kernels->cosine_product(sum, n, 1, more, c->of[n].matrix[0], padded(more), even, padded(p));
+	kernels->cosine_product(difference, n, 1, half, c->of[n].matrix[1], padded(half), odd, padded(p));
+	memset(row, 0, p * sizeof *row);
+	memcpy(row, even, more * sizeof *row);
+	memcpy(row + (p + 1) / 2, odd, half * sizeof *row);
+}
+
+void span_inverse(struct span_cosines *c, uint32_t n, const struct span_lanes *in, size_t rows, float *out, size_t out_stride)
+{
+	const struct spectral_kernels *kernels = spectral_kernels_get();
+	const uint32_t half = n / 2, more = n - half, p = c->p, first = (p - n) / 2;
+	const size_t stride = padded(p);
+	float *sum = c->work, *difference = sum + SPAN_ROWS * stride;
+
+	kernels->cosine_product(in->even, in->stride, rows, in->even_count < more ? in->even_count : more, c->of[n].matrix[0],
+	                        padded(more), sum, stride);
+	kernels->cosine_product(in->odd, in->stride, rows, in->odd_count < half ? in->odd_count : half, c->of[n].matrix[1],
+	                        padded(half), difference, stride);
+	for (size_t r = 0; r < rows; r++, sum += stride, difference += stride, out += out_stride) {
+		float *x = out + first;
+		for (uint32_t k = 0; k < half; k++) {
+			x[k] = sum[k] + difference[k];
+			x[n - 1 - k] = sum[k] - difference[k];
+		}
+		if (more > half)
+			x[half] = sum[half];
+		for (uint32_t k = 0; k < first; k++) {
+			out[k] = x[0];
+			out[p - 1 - k] = x[n - 1];
+		}
+	}
+}

@@ -1,0 +1,173 @@
+#include "spectrum_rows.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "memory.h"
+#include "spans.h"
+#include "spectral_kernels.h"
+
+/*
+ * A field after the wavelets: [row][width], even harmonics first, then odd ones, of either kind as many blocks of SPECTRUM_BLOCK as there
+ * are up to the last with a term.
+ */
+struct lanes {
+	float *value;
+	uint32_t even, odd; /* lanes; together the width */
+};
+
+struct spectrum_rows {
+	struct lattice_dims dims;
+	const struct spectrum_inverse *inverse;
+	bool half;
+	uint32_t high, wide; /* rows that are wanted: along theta_h, along theta_d */
+	uint16_t *span;
+	struct span_cosines *cosines;
+	struct lanes field[SPECTRUM_FIELDS];
+	float *plane;
+	float *line; /* half: whole rows, before every second cell is taken */
+};
+
+bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t harmonics, bool half, struct spectrum_rows **out,
+                               bp_error *error)
+{
+	const struct lattice_dims d = inverse->dims;
+	const size_t rows = (size_t)d.theta_h * d.theta_d, plane_bytes = rows * SPECTRUM_BLOCK * sizeof(float);
+	struct spectrum_rows *t = calloc(1, sizeof *t);
+
+	if (!t)
+		return error_memory(error, sizeof *t);
+	t->dims = d;
+	t->inverse = inverse;
+	t->half = half;
+	t->high = half ? d.theta_h / 2 : d.theta_h;
+	t->wide = half ? d.theta_d / 2 : d.theta_d;
+	t->span = malloc(rows * sizeof *t->span);
+	t->plane = memory_alloc(plane_bytes);
+	t->line = malloc(SPAN_ROWS * (size_t)d.phi_d * sizeof(float));
+	bp_status status = t->span && t->plane && t->line ? BP_OK : error_memory(error, plane_bytes);
+	if (!status) {
+		spans_find(d, t->span);
+		status = span_cosines_create(d, t->span, harmonics, true, &t->cosines, error);
+	}
+	if (status)
+		spectrum_rows_free(t);
+	else
+		*out = t;
+	return status;
+}
+
+void spectrum_rows_free(struct spectrum_rows *t)
+{
+	if (!t)
+		return;
+	for (int f = 0; f < SPECTRUM_FIELDS; f++)
+		free(t->field[f].value);
+	span_cosines_free(t->cosines);
+	free(t->span);
+	free(t->plane);
+	free(t->line);
+	free(t);
+}
+
+/* SPECTRUM_BLOCK harmonics, every second one from `first` on, to the lanes out[row][..], `width` apart. */
+static void harmonics_invert(struct spectrum_rows *t, const struct spectrum_term *terms, const uint32_t *start, uint32_t first,
+                             float *out, size_t width)
+{
+	const struct lattice_dims d = t->dims;
+	const size_t every = t->half ? 2 : 1;
+
+	memset(t->plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *t->plane);
+	for (uint32_t q = 0, m = first; q < SPECTRUM_BLOCK && m < d.phi_d; q++, m += 2)
+		for (uint32_t i = start[m]; i < start[m + 1]; i++)
+			t->plane[(size_t)terms[i].place * SPECTRUM_BLOCK + q] = terms[i].value;
+	spectral_kernels_get()->cdf97_plane(t->plane, d.theta_h, d.theta_d, t->inverse->levels, t->half);
+	for (size_t i = 0; i < t->high; i++)
+		for (size_t j = 0; j < t->wide; j++, out += width)
+			memcpy(out, t->plane + (i * d.theta_d + j) * every * SPECTRUM_BLOCK, SPECTRUM_BLOCK * sizeof *out);
+}
+
+/* Lanes up to the last harmonic of a parity with a term, in whole blocks. */
+static uint32_t lanes_needed(const uint32_t *start, uint32_t harmonics, uint32_t parity)
+{
+	uint32_t count = 0;
+	for (uint32_t m = parity; m < harmonics; m += 2)
+		if (start[m + 1] > start[m])
+			count = m / 2 + 1;
+	return (count + SPECTRUM_BLOCK - 1) / SPECTRUM_BLOCK * SPECTRUM_BLOCK;
+}
+
+bp_status spectrum_rows_field(struct spectrum_rows *t, int field, const struct spectrum_term *terms, const uint32_t *start,
+                              bp_error *error)
+{
+	struct lanes *lanes = &t->field[field];
+
+	free(lanes->value);
+	lanes->even = lanes_needed(start, t->dims.phi_d, 0);
+	lanes->odd = lanes_needed(start, t->dims.phi_d, 1);
+	const size_t width = lanes->even + lanes->odd, bytes = width * t->high * t->wide * sizeof(float);
+	lanes->value = memory_alloc(bytes ? bytes : 1);
+	if (!lanes->value)
+		return error_memory(error, bytes);
+	for (uint32_t q = 0; q < lanes->even; q += SPECTRUM_BLOCK)
+		harmonics_invert(t, terms, start, 2 * q, lanes->value + q, width);
+	for (uint32_t q = 0; q < lanes->odd; q += SPECTRUM_BLOCK)
+		harmonics_invert(t, terms, start, 2 * q + 1, lanes->value + lanes->even + q, width);
+	return BP_OK;
+}
+
+/* Of `count` lanes of some rows, those up to the last that is not 0 in all of them, in steps of a few. */
+static uint32_t lanes_used(const float *in, size_t stride, uint32_t rows, uint32_t count)
+{
+	enum { STEP = 8 };
+	for (; count > 0; count -= STEP) {
+		uint32_t any = 0, bits[STEP];
+		for (uint32_t r = 0; r < rows; r++) {
+			memcpy(bits, in + r * stride + count - STEP, sizeof bits);
+			for (int q = 0; q < STEP; q++)
+				any |= bits[q] << 1; /* but for the sign */
+		}
+		if (any)
+			break;
+	}
+	return count;
+}
+
+/* How many of `count` rows from the first one on have the same span; that one's in *span. */
+static uint32_t run_of_span(const struct spectrum_rows *t, uint32_t first, uint32_t count, uint32_t *span)
+{
+	const uint32_t every = t->half ? 2 : 1;
+	uint32_t run = 0;
+
+	for (uint32_t i = first / t->wide, j = first % t->wide; run < count; run++) {
+		const uint32_t here = t->span[(i * t->dims.theta_d + j) * every];
+		if (run && here != *span)
+			break;
+		*span = here;
+		if (++j == t->wide) {
+			j = 0;
+			i++;
+		}
+	}
+	return run;
+}
+
+void spectrum_rows_cells(struct spectrum_rows *t, int field, uint32_t first, uint32_t count, float *out, size_t stride)
+{
+	const struct lanes *lanes = &t->field[field];
+	const uint32_t p = t->dims.phi_d;
+	const size_t width = lanes->even + lanes->odd, apart = t->half ? p : stride;
+	float *cells = t->half ? t->line : out;
+
+	for (uint32_t r = 0, run, span = 0; r < count; r += run) {
+		run = run_of_span(t, first + r, count - r, &span);
+		const float *even = lanes->value + (first + r) * width, *odd = even + lanes->even;
+		const struct span_lanes in = {even, odd, width, lanes_used(even, width, run, lanes->even),
+		                              lanes_used(odd, width, run, lanes->odd)};
+		span_inverse(t->cosines, span, &in, run, cells + r * apart, apart);
+	}
+	for (uint32_t r = 0; r < count && t->half; r++)
+		for (uint32_t k = 0; k < p / 2; k++)
+			out[r * stride + k] = cells[r * apart + 2 * k];
+}

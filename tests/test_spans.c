@@ -1,0 +1,181 @@
+/* spans.h and spectrum_rows.h: rows cut at the horizon, against sums written out, for any extents. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "model/spectral/spans.h"
+#include "model/spectral/spectral_kernels.h"
+#include "model/spectral/spectrum_rows.h"
+#include "random_tables.h"
+
+static uint16_t *spans_of(struct lattice_dims d)
+{
+	uint16_t *span = malloc((size_t)d.theta_h * d.theta_d * sizeof *span);
+	spans_find(d, span);
+	return span;
+}
+
+/* Cell by cell, by the formula of FORMAT.md. */
+static void a_span_counts_the_cells_that_can_be_seen(void **unused)
+{
+	static const struct lattice_dims BOTH[] = {{90, 90, 180}, {17, 15, 7}};
+	(void)unused;
+	for (int n = 0; n < 2; n++) {
+		const struct lattice_dims d = BOTH[n];
+		uint16_t *span = spans_of(d);
+		uint8_t *seen = malloc(lattice_cells(d));
+		assert_int_equal(lattice_seen(d, seen, NULL), BP_OK);
+		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
+			const double i = r / d.theta_d, j = r % d.theta_d;
+			const double h = i / d.theta_h * (i / d.theta_h) * M_PI_2, t = j / d.theta_d * M_PI_2;
+			uint32_t count = 0;
+			for (uint32_t k = 0; k < d.phi_d; k++) {
+				const double from = M_PI * k / d.phi_d, to = M_PI * (k + 1) / d.phi_d;
+				const double least = from <= M_PI_2 + 1e-9 && to >= M_PI_2 - 1e-9 ? 0 : fmin(fabs(cos(from)), fabs(cos(to)));
+				const bool here = cos(h) * cos(t) - sin(h) * sin(t) * least > SPAN_MARGIN;
+				const uint32_t first = (d.phi_d - span[r]) / 2;
+				count += here;
+				/* what can be seen lies in the middle, and is what lattice.h means by it, but for cells that touch the horizon */
+				assert_true(!here || (k >= first && k < first + span[r]));
+				assert_true(!here || seen[r * d.phi_d + k]);
+			}
+			assert_int_equal(span[r], count ? count : 2 - d.phi_d % 2);
+		}
+		free(seen);
+		free(span);
+	}
+}
+
+static void span_forward_is_the_sum_written_out(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		const struct lattice_dims d = DIMS[n];
+		const uint32_t p = d.phi_d;
+		uint16_t *span = spans_of(d);
+		struct span_cosines *cosines = NULL;
+		assert_int_equal(span_cosines_create(d, span, d.phi_d, false, &cosines, NULL), BP_OK);
+		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
+			float row[1024], cells[1024];
+			const uint32_t s = span[r], first = (p - s) / 2;
+			for (uint32_t k = 0; k < p; k++)
+				cells[k] = row[k] = (float)(uniform() - 0.5);
+			span_forward(cosines, s, 0.25f, row);
+			for (uint32_t m = 0; m < p; m++) {
+				double sum = 0;
+				for (uint32_t k = 0; k < s && m < s; k++)
+					sum += ((double)cells[first + k] - 0.25) * cos(M_PI * m * (k + 0.5) / s);
+				sum *= sqrt((m ? 2.0 : 1.0) / s) * sqrt((double)p / s);
+				assert_true(fabs((double)row[spectrum_lane(p, m)] - sum) < 1e-5);
+			}
+		}
+		span_cosines_free(cosines);
+		free(span);
+	}
+}
+
+static struct spectrum_term *terms_of(const struct spectrum_inverse *inverse, const float *spectrum, uint32_t *start)
+{
+	const struct lattice_dims d = inverse->dims;
+	struct spectrum_term *terms = malloc((lattice_cells(d) + 1) * sizeof *terms);
+	uint32_t n = 0;
+	for (uint32_t m = 0; m < d.phi_d; m++) {
+		start[m] = n;
+		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
+			const float value = spectrum[(size_t)r * d.phi_d + spectrum_lane(d.phi_d, m)];
+			if (value != 0)
+				terms[n++] = spectrum_term_make(inverse, r, value);
+		}
+	}
+	start[d.phi_d] = n;
+	return terms;
+}
+
+/* Whole, or every second cell along all axes. */
+static float *inverse_of(struct lattice_dims d, const float *spectrum, bool half)
+{
+	const uint32_t every = half ? 2 : 1, rows = d.theta_h / every * (d.theta_d / every), width = d.phi_d / every;
+	float *table = malloc((size_t)rows * width * sizeof *table), *piece = malloc(SPECTRUM_BLOCK * 1024 * sizeof *piece);
+	struct spectrum_inverse *inverse = NULL;
+	struct spectrum_rows *t = NULL;
+	uint32_t start[64];
+	assert_int_equal(spectrum_inverse_create(d, &inverse, NULL), BP_OK);
+	assert_int_equal(spectrum_rows_create(inverse, d.phi_d, half, &t, NULL), BP_OK);
+	struct spectrum_term *terms = terms_of(inverse, spectrum, start);
+	assert_int_equal(spectrum_rows_field(t, 0, terms, start, NULL), BP_OK);
+	for (uint32_t r = 0; r < rows; r += SPECTRUM_BLOCK) {
+		const uint32_t count = rows - r < SPECTRUM_BLOCK ? rows - r : SPECTRUM_BLOCK;
+		spectrum_rows_cells(t, 0, r, count, piece, 1024);
+		for (uint32_t n = 0; n < count; n++)
+			memcpy(table + (size_t)(r + n) * width, piece + n * 1024, width * sizeof *table);
+	}
+	free(terms);
+	free(piece);
+	spectrum_rows_free(t);
+	spectrum_inverse_free(inverse);
+	return table;
+}
+
+static void what_can_be_seen_comes_back_and_what_lies_beyond_is_the_value_beside_it(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		const struct lattice_dims d = DIMS[n];
+		const size_t cells = lattice_cells(d);
+		float *table = malloc(cells * sizeof *table), *spectrum = malloc(cells * sizeof *spectrum);
+		struct spectrum *forward = NULL;
+		for (size_t i = 0; i < cells; i++)
+			spectrum[i] = table[i] = (float)(uniform() - 0.5);
+		assert_int_equal(spectrum_create(d, true, &forward, NULL), BP_OK);
+		const uint16_t *span = spectrum_spans(forward);
+		spectrum_forward(forward, spectrum, 0);
+		float *back = inverse_of(d, spectrum, false);
+		for (size_t i = 0; i < cells; i++) {
+			const uint32_t s = span[i / d.phi_d], first = (d.phi_d - s) / 2, last = first + s - 1, k = (uint32_t)(i % d.phi_d);
+			const size_t source = i - k + (k < first ? first : k > last ? last : k);
+			assert_true(fabsf(back[i] - table[source]) < 6e-6f);
+		}
+		spectrum_free(forward);
+		free(back);
+		free(table);
+		free(spectrum);
+	}
+}
+
+static void half_a_table_is_every_second_cell_of_the_whole(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		const struct lattice_dims d = DIMS[n], h = {d.theta_h / 2, d.theta_d / 2, d.phi_d / 2};
+		if (d.theta_h % 2 || d.theta_d % 2 || d.phi_d % 2)
+			continue;
+		float *spectrum = malloc(lattice_cells(d) * sizeof *spectrum);
+		for (size_t i = 0; i < lattice_cells(d); i++)
+			spectrum[i] = uniform() > 0.2 ? 0 : (float)(uniform() - 0.5);
+		float *whole = inverse_of(d, spectrum, false), *half = inverse_of(d, spectrum, true);
+		for (uint32_t i = 0; i < h.theta_h; i++)
+			for (uint32_t j = 0; j < h.theta_d; j++)
+				for (uint32_t k = 0; k < h.phi_d; k++)
+					assert_true(fabsf(half[lattice_index(h, i, j, k)] - whole[lattice_index(d, 2 * i, 2 * j, 2 * k)]) < 1e-6f);
+		free(spectrum);
+		free(whole);
+		free(half);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_span_counts_the_cells_that_can_be_seen),
+		cmocka_unit_test(span_forward_is_the_sum_written_out),
+		cmocka_unit_test(what_can_be_seen_comes_back_and_what_lies_beyond_is_the_value_beside_it),
+		cmocka_unit_test(half_a_table_is_every_second_cell_of_the_whole),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
