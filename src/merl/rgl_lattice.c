@@ -133,7 +133,7 @@ bp_status rgl_lattice_make(const struct rgl_material *material, struct lattice *
 		goto out;
 	for (uint32_t k = 0; k < dims.phi_d / 2; k++)
 		p[k] = angle_of((k + 0.5) / (dims.phi_d / 2.0));
-	const double last = fmin(material->theta_i[material->angles - 1], RGL_ANGLE_MOST * (PI / 180));
+	const double last = fmin(material->theta_i[material->angles - 1], (material->measured ? RGL_ANGLE_MOST : 90) * (PI / 180));
 	struct filling filling = {.material = material, .lattice = &lattice, .reciprocity = reciprocity, .cosine_least = cos(last)};
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
 		filling.parts = parts_of(material, i, dims.theta_h);

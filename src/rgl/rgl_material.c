@@ -289,6 +289,7 @@ static bp_status samples_read(const uint8_t *file, const struct tensor_table *ta
 			samples[4 * n + 3] = 1;
 		}
 	}
+	material->measured = valid != NULL;
 	if (valid)
 		data_mark(file + valid->offset, material);
 out:

@@ -46,6 +46,7 @@ struct rgl_material {
 	size_t height, width; /* of the samples */
 	float *samples;       /* [T][height][width][4]: red, green, blue; 1 where there is data, 0 where not */
 	bool jacobian;
+	bool measured;        /* the file says which samples were measured: it comes from an instrument */
 	uint32_t wavelengths; /* 0: an RGB file */
 	double first, last;   /* nm, where there are wavelengths */
 };
