@@ -7,6 +7,8 @@
  *
  *     c_m = s_m sum_k x_k cos(pi m (k + 1/2) / P)        s_0 = sqrt(1/P), s_m = sqrt(2/P)
  *
+ * Where rows are cut at the horizon, of those cells of a row that can be seen (spans.h).
+ *
  * Along theta_d and theta_h: for every harmonic the biorthogonal 9/7 wavelet of Cohen, Daubechies and Feauveau
  * (lifting steps of Daubechies and Sweldens 1998), with whole-sample symmetric extension; spectrum_levels(H, D) levels,
  * theta_d before theta_h at each.
