@@ -89,10 +89,12 @@ static void record_check(struct walk *walk, const struct index_entry *entry)
 		return;
 	}
 	free(record);
+	if (!(walk->flags & BP_VERIFY_DEEP))
+		return;
 	struct origin origin;
 	if (archive_entry_origin(walk->archive, entry, &head, &origin, &error) != BP_OK)
 		problem_report(walk, entry->name, &error);
-	if (walk->flags & BP_VERIFY_DEEP && layers_check(walk->archive, entry, &head, &error) != BP_OK)
+	if (layers_check(walk->archive, entry, &head, &error) != BP_OK)
 		problem_report(walk, entry->name, &error);
 }
 
