@@ -435,6 +435,8 @@ class Packing(unittest.TestCase):
             pressed.append(time.monotonic())
             os.kill(os.getpid(), signal.SIGINT)
 
+        # a shell that starts jobs in the background lets them ignore it
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         timer = threading.Timer(0.5, press)
         timer.start()
         with self.assertRaises(KeyboardInterrupt):
