@@ -44,7 +44,7 @@ do for [p = 1:3] {
 
 	set key outside right top Left reverse samplen 2
 	set lmargin at screen 0.515
-	set rmargin at screen 0.84
+	set rmargin at screen 0.79
 	unset logscale y
 	set format y '%g'
 	set ylabel 'sphere PSNR, key lights, dB (higher is better)'
