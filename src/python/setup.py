@@ -11,7 +11,7 @@ from setuptools.command.sdist import sdist
 HERE = os.path.dirname(os.path.abspath(__file__))
 CARRIED = os.path.join(HERE, "tree")  # what sdist takes along: the Makefile and the library's sources, as in a checkout
 SRC = os.path.join(CARRIED, "src") if os.path.isdir(CARRIED) else os.path.dirname(HERE)
-WINGS = ("", "merl", "model", "model/*", "codec", "codec/*", "archive")
+WINGS = ("", "rgl", "merl", "model", "model/*", "codec", "codec/*", "archive")
 FLAGS = ["-std=c17", "-O3", "-D_GNU_SOURCE", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden",
          "-ffunction-sections", "-fdata-sections"]
 
