@@ -19,8 +19,8 @@ if ! echo 'int main(void) { return 0; }' | $compiler -x c - -x none $libraries -
 fi
 tools=(CC=$compiler LD=$cross-ld AR=$cross-ar OBJCOPY=$cross-objcopy)
 if [ $# = 0 ]; then
-	set -- bytes carried compact_row copula cosines decoded direction environment fast_math fidelity fill hostile index items lattice \
-		memory merl_file pack paper_sections range_coder reader record select shown source spectrum spectrum_inverse table vectors \
+	set -- bytes carried compact_row cosines decoded direction environment fast_math fidelity fill holes hostile index items lattice \
+		memory merl_file pack paper_sections range_coder reader record rgl_material select shown source spans spectrum spectrum_inverse table vectors \
 		wavelet workers writer
 fi
 make -s -j"$(nproc)" BUILD="$build" "${tools[@]}" CFLAGS="-O2 -Werror" TEST_LIBS=-lcmocka "$build/libbrdfpack.a" "$build/brdfpack" "${@/#/$build/tests/test_}"
