@@ -117,6 +117,8 @@ def main():
     parser.add_argument("--out", default="build/bench/scale")
     parser.add_argument("folder", nargs="?")
     arguments = parser.parse_args()
+    if arguments.folder:
+        os.makedirs(arguments.folder, exist_ok=True)
     folder = tempfile.mkdtemp(dir=arguments.folder)
     rows = []
     try:
