@@ -1,5 +1,7 @@
 #include "name.h"
 
+#include "bytes.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -53,6 +55,8 @@ bool name_text(const char *name)
 			return false;
 	return true;
 }
+
+uint32_t name_shard(const char *name, uint32_t count) { return bytes_crc32((const uint8_t *)name, strlen(name)) % count + 1; }
 
 int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes)
 {

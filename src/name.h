@@ -1,6 +1,7 @@
 /*
  * name.h: what may be a material's name: UTF-8, 1 to 255 bytes, no control character (U+0000..U+001F,
- * U+007F..U+009F), no '/', not "." and not "..". Names are ordered by their bytes (memcmp, the shorter first).
+ * U+007F..U+009F), no '/', not "." and not "..". Names are ordered by their bytes (memcmp, the shorter first), and alone say to
+ * which shard of a build a material belongs.
  */
 #ifndef NAME_H
 #define NAME_H
@@ -22,6 +23,9 @@ size_t name_character(const uint8_t *s, size_t left, uint32_t *code);
 
 /* Whether the bytes are UTF-8, whatever the characters. */
 bool name_text(const char *name);
+
+/* Of `count` (1 to 65536) shards the one that a material of this name belongs to, 1 to count: CRC32(name) mod count, plus 1. */
+uint32_t name_shard(const char *name, uint32_t count);
 
 /* -1, 0 or 1, in the archive's order. */
 int name_compare(const char *a, size_t a_bytes, const char *b, size_t b_bytes);

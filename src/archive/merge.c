@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "name.h"
 #include "writer.h"
 
 static uint32_t layers_wanted(const struct record_head *head, double max_log_rmse)
@@ -58,7 +59,9 @@ static bp_status record_copy(const struct bp_archive *archive, const struct inde
 	uint8_t *record = NULL, *kept = NULL;
 	totals->reading = true;
 	bp_status status = archive_entry_record(archive, entry, &head, &record, error);
-	if (!status && options->alike)
+	if (status)
+		strcpy(totals->damaged, entry->name);
+	if (!status && options->shards)
 		status = likeness_check(likeness, archive, &head, error);
 	if (status) {
 		free(record);
@@ -124,6 +127,7 @@ bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index
 struct input {
 	const struct bp_archive *archive;
 	size_t number;
+	uint32_t shard;       /* of a build into copy_options.shards, by the names seen; 0: none seen */
 	uint64_t next, count; /* materials: entry is number next - 1 */
 	struct index_page leaf;
 	struct index_entry entry;
@@ -133,8 +137,33 @@ struct input {
 struct walk {
 	struct input **heap;
 	size_t count;
+	uint32_t shards;           /* as in copy_options */
+	const struct input **seen; /* [shards]: the input that is shard n + 1, or NULL */
 	struct likeness likeness;
 };
+
+/* Is the name that the input has come to one of its shard, and is no other input that shard? */
+static bp_status shard_check(const struct walk *walk, struct input *input, bp_error *error)
+{
+	const char *const name = input->entry.name;
+	if (!walk->shards)
+		return BP_OK;
+	const uint32_t shard = name_shard(name, walk->shards);
+	if (!input->shard) {
+		const struct input *const same = walk->seen[shard - 1];
+		if (same)
+			return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+			                 "%s: belongs to shard %u/%u, as do the materials of %s: give each shard once", name, shard,
+			                 walk->shards, archive_path(same->archive));
+		walk->seen[shard - 1] = input;
+		input->shard = shard;
+	}
+	if (input->shard != shard)
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+		                 "%s: belongs to shard %u/%u, others in it to %u/%u: not made with --shard K/%u", name, shard,
+		                 walk->shards, input->shard, walk->shards, walk->shards);
+	return BP_OK;
+}
 
 static bool input_before(const struct input *a, const struct input *b)
 {
@@ -163,10 +192,13 @@ static bp_status walk_advance(struct walk *walk, bp_error *error)
 {
 	struct input *input = walk->heap[0];
 	bp_status status = BP_OK;
-	if (input->next < input->count)
-		status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
-	else
+	if (input->next == input->count) {
 		walk->heap[0] = walk->heap[--walk->count];
+	} else {
+		status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
+		if (!status)
+			status = shard_check(walk, input, error);
+	}
 	if (!status)
 		walk_sink(walk, 0);
 	return status;
@@ -209,6 +241,8 @@ static bp_status walk_start(const struct bp_archive *const *archives, size_t cou
 			continue;
 		*failed = n;
 		bp_status status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
+		if (!status)
+			status = shard_check(walk, input, error);
 		if (status)
 			return status;
 		walk->heap[walk->count++] = input;
@@ -223,12 +257,14 @@ bp_status archive_merge(const struct bp_archive *const *archives, size_t count, 
 {
 	struct archive_writer *writer = NULL;
 	struct input *inputs = calloc(count ? count : 1, sizeof *inputs);
-	struct walk walk = {.heap = calloc(count ? count : 1, sizeof *walk.heap)};
+	struct walk walk = {.heap = calloc(count ? count : 1, sizeof *walk.heap),
+	                    .shards = options->shards,
+	                    .seen = calloc(options->shards + 1, sizeof *walk.seen)};
 	bp_status status = BP_OK;
 
 	*totals = (struct copy_totals){0};
 	*failed = 0;
-	if (!inputs || !walk.heap)
+	if (!inputs || !walk.heap || !walk.seen)
 		status = error_memory(error, count * sizeof *inputs);
 	if (!status) {
 		status = walk_start(archives, count, inputs, &walk, failed, error);
@@ -240,6 +276,7 @@ bp_status archive_merge(const struct bp_archive *const *archives, size_t count, 
 		status = first_copy(&walk, options, writer, totals, failed, error);
 	if (writer)
 		status = writer_end(writer, status, totals, error);
+	free(walk.seen);
 	free(walk.heap);
 	free(inputs);
 	return status;

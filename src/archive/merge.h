@@ -17,8 +17,9 @@ struct copy_options {
 	double
 		max_log_rmse; /* > 0: keep the fewest layers whose log RMSE of what can be seen is at most this, all where none is; 0: keep all */
 	bool replace; /* merge: of a name that several inputs have, take the last input's; otherwise that is refused */
-	bool
-		alike; /* merge: refuse records of other options, profile or codec version than the first one's: they are of no one build */
+	/* merge: above 0, the inputs are the shards of one build into this many: refuse one that is not, or is there twice, and records of
+	   other options, profile or codec version than the first one's. An input without a material may be any shard */
+	uint32_t shards;
 	bool (*stop)(void); /* asked before every record; true: nothing is written, *stopped is set. NULL: never */
 };
 
@@ -28,7 +29,8 @@ struct copy_totals {
 	uint64_t trimmed;              /* copied with fewer layers than they had */
 	uint64_t bytes_from, bytes_to; /* of their records, before and after */
 	bool stopped;
-	bool reading; /* after an error: it is about an input, not about the output */
+	bool reading;                            /* after an error: it is about an input, not about the output */
+	char damaged[RECORD_NAME_BYTES_MAX + 1]; /* after an error: the material whose record cannot be read, or empty */
 };
 
 /*

@@ -13,7 +13,7 @@ static const struct {
 	{"NVIDIA ARC MBSDF", 16, "a measured BSDF for MDL (NVIDIA, .mbsdf)"},
 	{"\x8b"
      "BPK\r\n",
-     6, "an archive of brdfpack"},
+     6, "an archive of brdfpack; `brdfpack merge` joins archives"},
 	{"\x89PNG", 4, "a picture (PNG)"},
 	{"\xff\xd8\xff", 3, "a picture (JPEG)"},
 	{"\x76\x2f\x31\x01", 4, "a picture (OpenEXR)"},

@@ -59,7 +59,7 @@ static void command_unknown(const char *name)
 
 static void help_print(FILE *out)
 {
-	fprintf(out, "brdfpack packs measured materials (MERL files) into one indexed archive.\n\n"
+	fprintf(out, "brdfpack packs measured materials (MERL and RGL files) into one indexed archive.\n\n"
 	             "Usage: brdfpack COMMAND [OPTION]... [ARGUMENT]...\n\nCommands:\n");
 	for (size_t i = 0; commands[i]; i++)
 		fprintf(out, "  %-9s %s\n", commands[i]->name, commands[i]->description);

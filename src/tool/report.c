@@ -95,6 +95,9 @@ void report_error(const char *file, const char *material, const bp_error *error)
 		file = NULL; /* what writes files names them itself */
 	line_add_where(&line, file, material);
 	line_add(&line, text);
+	if (file && !material &&
+	    (error->status == BP_ERROR_CORRUPT || error->status == BP_ERROR_CHECKSUM)) /* an archive as a whole */
+		line_add(&line, "; `brdfpack recover` saves what is intact");
 	line_print(&line);
 }
 

@@ -18,7 +18,7 @@ bp_status whole_file_read(const char *path, size_t most, char **out, size_t *out
 
 	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* O_NONBLOCK: a FIFO must not hang us */
 	if (fd < 0)
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s", strerror(errno));
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
 	if (fstat(fd, &facts) != 0 || !S_ISREG(facts.st_mode))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "not a regular file");
 	else if ((uint64_t)facts.st_size > most)
@@ -30,7 +30,7 @@ bp_status whole_file_read(const char *path, size_t most, char **out, size_t *out
 		if (got > 0)
 			used += (size_t)got;
 		else
-			status = error_set(error, BP_ERROR_IO, used, "%s", strerror(errno));
+			status = error_set(error, BP_ERROR_IO, used, "cannot read: %s", strerror(errno));
 	close(fd);
 	if (status != BP_OK) {
 		free(text);

@@ -185,7 +185,7 @@ void report_summary(const struct build_options *options, bool written, bool stop
 	}
 	char damaged[64] = "";
 	if (totals->damaged > 0)
-		snprintf(damaged, sizeof damaged, ", %" PRIu64 " damaged inputs", totals->damaged);
+		snprintf(damaged, sizeof damaged, ", %" PRIu64 " input%s with errors", totals->damaged, totals->damaged == 1 ? "" : "s");
 	report_text("%s: %s: %" PRIu64 " packed, %" PRIu64 " refused, %" PRIu64 " missing%s", output,
 	            written ? "written without some materials" : "not written", totals->packed, totals->refused, totals->missing,
 	            damaged);

@@ -1,8 +1,6 @@
 #include "build_state.h"
 
-#include <string.h>
-
-#include "bytes.h"
+#include "name.h"
 #include "tool/interrupt.h"
 #include "tool/report.h"
 
@@ -16,6 +14,5 @@ void build_stop(struct build *build, const char *file, const char *material, con
 
 bool build_shard_has(const struct build_options *options, const char *name)
 {
-	return options->shard_count <= 1 ||
-	       bytes_crc32((const uint8_t *)name, strlen(name)) % options->shard_count == options->shard - 1;
+	return options->shard_count <= 1 || name_shard(name, options->shard_count) == options->shard;
 }

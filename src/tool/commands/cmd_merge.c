@@ -32,7 +32,7 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 
 	if (interrupt_install(&wake_fd, &error) ||
 	    archive_merge((const struct bp_archive *const *)archives, count, options, &totals, &failed, &error)) {
-		report_error(totals.reading ? paths[failed] : options->output, NULL, &error);
+		report_error(totals.reading ? paths[failed] : options->output, totals.damaged[0] ? totals.damaged : NULL, &error);
 		return EXIT_FAILED;
 	}
 	if (totals.stopped)
@@ -84,7 +84,7 @@ static int merge_main(const struct command *self, int argc, char **argv)
 	}
 	if (!output_check(options.output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, count))
 		return EXIT_FAILED;
-	options.alike = expected != 0;
+	options.shards = (uint32_t)expected;
 	files_allow(count);
 	bp_archive **archives = calloc(count, sizeof *archives);
 	if (!archives) {
@@ -116,7 +116,8 @@ const struct command command_merge = {
 			 "  -o, --output OUT.bpk  the new archive; replaces an older one that is none of the inputs\n"
 			 "      --force           also one of the inputs, or a file that is no archive\n"
 			 "      --expect N        the archives are the N shards of one build (build --shard): refuse\n"
-			 "                        another number, and records made with other options or versions\n"
+			 "                        another number, an archive that is no shard of N or is there twice,\n"
+			 "                        and records made with other options or versions\n"
 			 "      --replace         of a name that several archives have, take the last one's\n"
 			 "  -q, --quiet           say nothing on success\n"
 			 "  -h, --help            this text\n",

@@ -120,7 +120,7 @@ static int subset_write(struct subset *subset)
 
 	if (interrupt_install(&wake_fd, &error) ||
 	    archive_subset(subset->archive, subset->index, subset->count, &subset->copy, &totals, &error)) {
-		report_error(totals.reading ? subset->path : subset->copy.output, NULL, &error);
+		report_error(totals.reading ? subset->path : subset->copy.output, totals.damaged[0] ? totals.damaged : NULL, &error);
 		return EXIT_FAILED;
 	}
 	if (totals.stopped)
