@@ -104,8 +104,8 @@ def plot(rows, out):
     lines = ", ".join("'%s' index %d using 1:%%d with linespoints lw 2 title '%s'" % (data.name, n, name) for n, name in enumerate(names))
     script = ("set terminal svg size 1100,420 font 'sans,13' background 'white'; set output '%s'; set multiplot; set tmargin 1; "
               "set bmargin 4; set logscale xy; set format x '10^{%%T}'; set grid; set xlabel 'materials'; unset key; "
-              "set lmargin at screen 0.07; set rmargin at screen 0.38; set ylabel 'microseconds for each material handled'; plot %s; "
-              "set lmargin at screen 0.45; set rmargin at screen 0.76; set key outside right; set ylabel 'MB, largest process'; "
+              "set lmargin at screen 0.09; set rmargin at screen 0.40; set ylabel 'microseconds for each material'; plot %s; "
+              "set lmargin at screen 0.47; set rmargin at screen 0.78; set key outside right; set ylabel 'MB, largest process'; "
               "unset logscale y; set yrange [0:*]; plot %s" % (out, lines.replace("%d", "2"), lines.replace("%d", "3")))
     subprocess.run(["gnuplot", "-e", script], check=True)
     os.unlink(data.name)

@@ -53,8 +53,8 @@ static void summary_print(const struct findings *findings, uint64_t materials, u
 		printf("%s: %" PRIu64 " material%s%s, no problem found\n", findings->path, materials, materials == 1 ? "" : "s",
 		       deep ? ", all decoded" : "");
 	} else {
-		printf("%s: %" PRIu64 " problem%s found; restore a copy, build it again, or save the rest with `brdfpack recover`\n", findings->path, findings->count,
-		       findings->count == 1 ? "" : "s");
+		printf("%s: %" PRIu64 " problem%s found; restore a copy, build it again, or save the rest with `brdfpack recover`\n",
+		       findings->path, findings->count, findings->count == 1 ? "" : "s");
 	}
 }
 
