@@ -19,7 +19,8 @@ rm -rf "$scratch/tree/src/python/build"
 "${pip[@]}" wheel --no-deps -w "$scratch/wheel" "$scratch/tree/src/python"
 "$python" -m venv "$scratch/maker"
 "$scratch/maker/bin/pip" --disable-pip-version-check -q install --find-links "$scratch/reach" "setuptools>=64" wheel cffi
-(cd "$scratch/tree/src/python" && "$scratch/maker/bin/python" -c 'import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])' "$scratch/sdist") >"$scratch/log"
+(cd "$scratch/tree/src/python" && "$scratch/maker/bin/python" -c 'import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])' "$scratch/sdist") >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+if grep "standard file not found" "$scratch/log"; then exit 1; fi # no README
 rm -rf "$scratch/tree/src"
 "${pip[@]}" install --find-links "$scratch/reach" "$scratch"/wheel/brdfpack-*.whl
 cd "$scratch"

@@ -88,9 +88,9 @@ class Info(NamedTuple):
     zeros: str
 
 
-def elements(call, handle, index: int, kind: str, most: int, error) -> list:
+def elements(call, handle, index: int, kind: str, most: int, error, *where: str) -> list:
     array, count = ffi.new(f"{kind}[]", most), ffi.new("uint32_t *")
-    check(call(handle, index, ffi.sizeof(kind), array, most, count, error), error)
+    check(call(handle, index, ffi.sizeof(kind), array, most, count, error), error, *where)
     return [array[n] for n in range(count[0])]
 
 
@@ -101,6 +101,7 @@ class Entry(NoPickle):
         self._archive = archive
         self._index = index
         self.name = name
+        self._where = (archive.path, name)  # what errors name
 
     def __repr__(self) -> str:
         return f"<brdfpack material {self.name!r}, not loaded>"
@@ -111,9 +112,9 @@ class Entry(NoPickle):
         error = ffi.new("bp_error *")
         info = ffi.new("bp_material_info *", {"struct_bytes": ffi.sizeof("bp_material_info")})
         with self._archive._open() as handle:
-            check(lib.bp_archive_info(handle, self._index, info, error), error)
-            layers = elements(lib.bp_archive_layers, handle, self._index, "bp_layer", lib.BP_LAYERS_MAX, error)
-            sections = elements(lib.bp_archive_sections, handle, self._index, "bp_section", lib.BP_SECTIONS_MAX, error)
+            check(lib.bp_archive_info(handle, self._index, info, error), error, *self._where)
+            layers = elements(lib.bp_archive_layers, handle, self._index, "bp_layer", lib.BP_LAYERS_MAX, error, *self._where)
+            sections = elements(lib.bp_archive_sections, handle, self._index, "bp_section", lib.BP_SECTIONS_MAX, error, *self._where)
         return Info(
             name=self.name, profile=PROFILES.get(info.profile, str(info.profile)), codec_version=info.codec_version,
             shape=(info.theta_h, info.theta_d, info.phi_d), head_bytes=info.head_bytes, record_bytes=info.record_bytes,
@@ -130,7 +131,7 @@ class Entry(NoPickle):
         """Its record, byte for byte: what Writer.add takes."""
         error, record, count = ffi.new("bp_error *"), ffi.new("uint8_t **"), ffi.new("size_t *")
         with self._archive._open() as handle:
-            check(lib.bp_archive_record(handle, self._index, record, count, error), error)
+            check(lib.bp_archive_record(handle, self._index, record, count, error), error, *self._where)
         try:
             return ffi.buffer(record[0], count[0])[:]
         finally:
@@ -146,14 +147,14 @@ class Entry(NoPickle):
                                                 "colour": COLOURS[colour], "sampling": int(bool(sampling))})
         record, shape = self.record(), self.info.shape
         with self._archive._open() as handle:
-            check(lib.bp_material_load(handle, self._index, options, material, error), error)
+            check(lib.bp_material_load(handle, self._index, options, material, error), error, *self._where)
         return Material(material[0], self.name, record, max_error, shape)
 
     def table(self, max_error: float = 0.0, dtype="float32", continued: bool = False):
         """The decoded table without loading the material: (H, D, P, 3), 1/sr; max_error as in Archive.load, the rest as in Material.table."""
         shape = self.info.shape
         with self._archive._open() as handle:
-            return table_read(handle, self._index, shape, max_error, dtype, continued)
+            return table_read(handle, self._index, shape, max_error, dtype, continued, *self._where)
 
 
 class Archive(Mapping, NoPickle):
@@ -203,7 +204,7 @@ class Archive(Mapping, NoPickle):
         error, name = ffi.new("bp_error *"), ffi.new("char[256]")
         for index in range(len(self)):
             with self._open() as handle:
-                check(lib.bp_archive_name(handle, index, name, error), error)
+                check(lib.bp_archive_name(handle, index, name, error), error, self.path)
             yield ffi.string(name).decode()
 
     def _find(self, name: str) -> int:
@@ -213,7 +214,7 @@ class Archive(Mapping, NoPickle):
                 sought = name_bytes(name)
             except ValueError:
                 raise NotFound(lib.BP_ERROR_NOT_FOUND, f"there is no material {name!r}") from None
-            check(lib.bp_archive_find(handle, sought, index, error), error)
+            check(lib.bp_archive_find(handle, sought, index, error), error, self.path)
         return index[0]
 
     def __contains__(self, name: object) -> bool:
@@ -295,7 +296,7 @@ def open(source) -> Archive:  # noqa: A001
     error, handle = ffi.new("bp_error *"), ffi.new("bp_archive **")
     if isinstance(source, bytes):
         held = ffi.from_buffer(source)
-        check(lib.bp_archive_open_memory(held, len(source), handle, error), error)
+        check(lib.bp_archive_open_memory(held, len(source), handle, error), error, "in memory")
         archive = Archive(handle[0], "in memory")
         archive._held = held  # type: ignore[attr-defined]  # for as long as the handle reads it
         return archive

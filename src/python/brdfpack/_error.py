@@ -5,7 +5,7 @@ from ._native import ffi, lib
 
 
 class Error(Exception):
-    """What the library refused: str() is its message. status: a number that never changes its meaning, offset: byte in the file, or None."""
+    """What the library refused: str() is its message, with the archive and the material where there are such. status: a number that never changes its meaning, offset: byte in the file, or None."""
 
     def __init__(self, status: int, message: str, offset: int | None = None):
         super().__init__(message)
@@ -25,15 +25,19 @@ class NotFound(Error, KeyError):
         return NotFound, (self.status, self.args[0], self.offset)
 
 
-def check(status: int, error) -> None:
-    """Raises what `error`, a bp_error that the call filled, says."""
+def check(status: int, error, *where: str) -> None:
+    """Raises what `error`, a bp_error that the call filled, says; of damage also `where` it is: the archive, the material, the offset."""
     if status == lib.BP_OK:
         return
     message = ffi.string(error.message).decode("utf-8", "replace")
     if status == lib.BP_ERROR_MEMORY:
         raise MemoryError(message)
-    kind = NotFound if status == lib.BP_ERROR_NOT_FOUND else Error
-    raise kind(status, message, None if error.offset == 2**64 - 1 else error.offset)
+    offset = None if error.offset == 2**64 - 1 else error.offset
+    if status in (lib.BP_ERROR_CORRUPT, lib.BP_ERROR_CHECKSUM) and offset is not None:
+        message = ": ".join((*where, f"corrupt at offset {offset}", message))
+    elif status in (lib.BP_ERROR_CORRUPT, lib.BP_ERROR_CHECKSUM, lib.BP_ERROR_UNSUPPORTED, lib.BP_ERROR_NOT_OURS):
+        message = ": ".join((*where, ffi.string(lib.bp_status_text(status)).decode(), message))
+    raise (NotFound if status == lib.BP_ERROR_NOT_FOUND else Error)(status, message, offset)
 
 
 class NoPickle:

@@ -12,7 +12,7 @@ from ._native import ffi, lib
 LAYOUTS = {"float32": (lib.BP_NUMBER_FLOAT, np.float32), "float64": (lib.BP_NUMBER_DOUBLE, np.float64), "float16": (lib.BP_NUMBER_HALF, np.float16)}
 
 
-def table_read(handle, index: int, shape: tuple[int, int, int], max_error: float, dtype, continued: bool) -> np.ndarray:
+def table_read(handle, index: int, shape: tuple[int, int, int], max_error: float, dtype, continued: bool, *where: str) -> np.ndarray:
     """The decoded table of one material: (H, D, P, 3), 1/sr."""
     name = np.dtype(dtype).name
     if name not in LAYOUTS:
@@ -22,7 +22,7 @@ def table_read(handle, index: int, shape: tuple[int, int, int], max_error: float
     error = ffi.new("bp_error *")
     options = ffi.new("bp_table_options *", {"struct_bytes": ffi.sizeof("bp_table_options"), "max_log_rmse": max_error, "number": number,
                                              "layout": lib.BP_LAYOUT_INTERLEAVED, "continued": int(bool(continued))})
-    check(lib.bp_archive_table(handle, index, options, ffi.cast("void *", values.ctypes.data), values.nbytes, error), error)
+    check(lib.bp_archive_table(handle, index, options, ffi.cast("void *", values.ctypes.data), values.nbytes, error), error, *where)
     return values
 
 
