@@ -113,6 +113,8 @@ static void what_is_not_an_archive_is_called_so(void **state)
 		fixture_file_write(fixture_path("x"), cases[i].bytes, cases[i].count);
 		assert_int_equal(bp_archive_open(fixture_path("x"), &archive, &error), cases[i].expected);
 		assert_int_equal(error.status, cases[i].expected);
+		if (error.status == BP_ERROR_NOT_OURS) /* whole without the status's text */
+			assert_string_equal(error.message, "not an archive: it does not begin as one");
 	}
 	assert_int_equal(bp_archive_open(fixture_path("nothing-here"), &archive, NULL), BP_ERROR_IO);
 	assert_int_equal(bp_archive_open(fixture_folder, &archive, NULL), BP_ERROR_NOT_OURS);

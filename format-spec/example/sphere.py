@@ -17,6 +17,8 @@ def png_write(path, rgb):
         for kind, data in (b"IHDR", head), (b"IDAT", zlib.compress(rows)), (b"IEND", b""):
             file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
 
+if len(sys.argv) != 4:
+    sys.exit(__doc__)
 with brdfpack.open(sys.argv[1]) as archive:
     material = archive.load(sys.argv[2], form="compact", sampling=True)
 axis = (np.arange(SIZE) + 0.5) / SIZE * 2 - 1

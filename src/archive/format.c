@@ -52,7 +52,7 @@ bp_status archive_header_read(const uint8_t *bytes, size_t count, uint64_t file_
 	bp_status status;
 
 	if (count < ARCHIVE_MAGIC_BYTES || memcmp(bytes, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES) != 0)
-		return error_set(error, BP_ERROR_NOT_OURS, 0, "it does not begin as one");
+		return error_set(error, BP_ERROR_NOT_OURS, 0, "not an archive: it does not begin as one");
 	if (count < ARCHIVE_HEADER_BYTES)
 		return error_set(error, BP_ERROR_CORRUPT, count, "the file ends after %zu bytes, within its header of %d", count,
 		                 ARCHIVE_HEADER_BYTES);

@@ -36,7 +36,8 @@ def check(status: int, error, *where: str) -> None:
     if status in (lib.BP_ERROR_CORRUPT, lib.BP_ERROR_CHECKSUM) and offset is not None:
         message = ": ".join((*where, f"corrupt at offset {offset}", message))
     elif status in (lib.BP_ERROR_CORRUPT, lib.BP_ERROR_CHECKSUM, lib.BP_ERROR_UNSUPPORTED, lib.BP_ERROR_NOT_OURS):
-        message = ": ".join((*where, ffi.string(lib.bp_status_text(status)).decode(), message))
+        kind = ffi.string(lib.bp_status_text(status)).decode()
+        message = ": ".join((*where, message) if message.startswith(kind) else (*where, kind, message))
     raise (NotFound if status == lib.BP_ERROR_NOT_FOUND else Error)(status, message, offset)
 
 
