@@ -132,11 +132,48 @@ static void hostile_index_pages_are_refused(void **state)
 		assert_int_equal(verify_with_page(cases[i].at, cases[i].value, cases[i].width), BP_ERROR_CORRUPT);
 }
 
+/* Numbers at the end of their range, in a tree of two leaves and a root: a sum with them must not come round to the front. */
+static void ordinals_beyond_all_numbers_are_no_materials(void **state)
+{
+	static const uint64_t ORDINALS[] = {UINT64_MAX, UINT64_MAX - 1, 20, UINT64_C(1) << 32};
+	char name[20][256];
+	const char *names[20];
+	size_t bytes;
+	uint64_t index = 77;
+	(void)state;
+	for (size_t n = 0; n < 20; n++) {
+		memset(name[n], 'a' + (int)n, 255);
+		name[n][255] = 0;
+		names[n] = name[n];
+	}
+	fixture_archive(fixture_path("o.bpk"), names, 20, 9);
+	uint8_t *file = fixture_file_read(fixture_path("o.bpk"), &bytes), *root = file + bytes - PAGE_BYTES;
+	uint8_t *leaf = root - PAGE_BYTES, *at = root + PAGE_HEAD_BYTES + 4 + 8 + 1 + 255 + 4;
+	assert_memory_equal(at, leaf + 8, 8); /* the first number of the second leaf */
+	for (size_t n = 0; n < sizeof ORDINALS / sizeof *ORDINALS; n++) {
+		bp_archive *archive = NULL;
+		store_u32(at, (uint32_t)ORDINALS[n]);
+		store_u32(at + 4, (uint32_t)(ORDINALS[n] >> 32));
+		memcpy(leaf + 8, at, 8);
+		store_u32(leaf + PAGE_BYTES - 4, bytes_crc32(leaf, PAGE_BYTES - 4));
+		store_u32(root + PAGE_BYTES - 4, bytes_crc32(root, PAGE_BYTES - 4));
+		fixture_file_write(fixture_path("p.bpk"), file, bytes);
+		assert_int_equal(bp_archive_open(fixture_path("p.bpk"), &archive, NULL), BP_OK);
+		for (size_t k = 17; k < 20; k++)
+			assert_int_equal(bp_archive_find(archive, names[k], &index, NULL), BP_ERROR_CORRUPT);
+		assert_int_equal(bp_archive_verify(archive, 0, NULL, NULL, NULL), BP_ERROR_CORRUPT);
+		bp_archive_close(archive);
+	}
+	assert_int_equal(index, 77);
+	free(file);
+}
+
 static void two_entries_may_not_share_a_record(void **state)
 {
 	size_t bytes;
 	uint8_t *file, *page;
 	bp_archive *archive = NULL;
+	struct index_entry entry;
 	struct record_head head;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 3, 9);
@@ -147,8 +184,8 @@ static void two_entries_may_not_share_a_record(void **state)
 	fixture_file_write(fixture_path("s.bpk"), file, bytes);
 	assert_int_equal(read_all(fixture_path("s.bpk"), NULL), BP_ERROR_CORRUPT);
 	assert_int_equal(bp_archive_open(fixture_path("s.bpk"), &archive, NULL), BP_OK);
-	assert_int_equal(archive_record_head(archive, 0, &head, NULL), BP_OK);
-	assert_int_equal(archive_record_head(archive, 1, &head, NULL), BP_ERROR_CORRUPT);
+	assert_int_equal(archive_record_head(archive, 0, &entry, &head, NULL), BP_OK);
+	assert_int_equal(archive_record_head(archive, 1, &entry, &head, NULL), BP_ERROR_CORRUPT);
 	bp_archive_close(archive);
 	free(file);
 }
@@ -159,6 +196,7 @@ int main(void)
 		cmocka_unit_test(every_truncation_is_noticed),
 		cmocka_unit_test(every_flipped_bit_is_noticed_and_nothing_false_is_told),
 		cmocka_unit_test(hostile_index_pages_are_refused),
+		cmocka_unit_test(ordinals_beyond_all_numbers_are_no_materials),
 		cmocka_unit_test(two_entries_may_not_share_a_record),
 	};
 	return cmocka_run_group_tests(tests, fixture_folder_make, fixture_folder_remove);

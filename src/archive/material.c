@@ -132,7 +132,6 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
                            bp_error *error)
 {
 	const bp_load_options whole = {.struct_bytes = sizeof whole};
-	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
 	bp_material *material = NULL;
@@ -143,10 +142,7 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	status = options_check(options, error);
 	if (status)
 		return status;
-	leaf.count = 0;
-	status = archive_entry(archive, index, &leaf, &entry, error);
-	if (!status)
-		status = archive_entry_head(archive, &entry, &head, error);
+	status = archive_record_head(archive, index, &entry, &head, error);
 	if (!status)
 		status = need_check(&head, options->max_memory_bytes, error);
 	if (status)

@@ -121,8 +121,7 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 	status = sections_fetch(head, codec, layers, fetch, user, sections, held, &count, error);
 	if (!status) {
 		status = codec->decode(head, sections, count, model, &failed, error);
-		if (status && failed < count && error && error->offset != BP_NO_OFFSET)
-			error->offset += sections[failed].entry->offset;
+		status = error_shift(status, failed < count ? sections[failed].entry->offset : 0, error);
 	}
 	while (count > 0)
 		free(held[--count]);

@@ -27,7 +27,7 @@
 /* Of the unit, in 1/sr: a normal number with a reciprocal, and the hundredth of any value is one. */
 #define SPECTRAL_UNIT_LEAST 0x1p-1022
 #define SPECTRAL_UNIT_MOST 0x1p999
-#define SPECTRAL_CODES_UNIT 0x1p39 /* of spectral_codes of kernels.h: what its 1 is, in units */
+#define SPECTRAL_CODES_UNIT 0x1p39 /* of spectral_codes (spectral_kernels.h): what its 1 is, in units */
 enum { SPECTRAL_PLANES_MAX = 24 }; /* |level| < 2^24 */
 #define SPECTRAL_CENTRE_BELOW 0.4f /* where a level lies whose lower planes are missing, as a share of them */
 
