@@ -16,6 +16,7 @@
 #include "merl/rgl_file.h"
 #include "merl/two_halves.h"
 #include "tensor_maker.h"
+#include "words.h"
 
 #define PI 3.14159265358979323846
 
@@ -53,12 +54,6 @@ static bp_status made_read(const struct made_file *made, struct lattice *lattice
 	const bp_status status = bytes_read(&bytes, lattice, origin, error);
 	byte_buffer_free(&bytes);
 	return status;
-}
-
-static void expect_words(const char *message, const char *words)
-{
-	if (!strstr(message, words))
-		fail_msg("\"%s\" lacks \"%s\"", message, words);
 }
 
 static void refused(const struct byte_buffer *bytes, const char *words)
