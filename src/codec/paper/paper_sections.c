@@ -86,7 +86,7 @@ static bp_status model_write(const struct paper_model *paper, uint32_t shift, st
 				*layer_count = PARTS[part].layer + 1u;
 				*left_out &= ~PARTS[part].left_out;
 			}
-			fields_free(coarse, count);
+			sparse_fields_free(coarse, count);
 		}
 	return status;
 }
