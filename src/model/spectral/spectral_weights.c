@@ -9,11 +9,13 @@
 
 enum { EDGE = SPECTRAL_WEIGHTS_EDGE };
 
-/* Where coefficient i of an axis of n cells lies, in edges of regions from the first one's centre. */
-static float place(uint32_t n, uint32_t i, uint32_t step, uint32_t levels)
+/* Where coefficient i of an axis of n cells lies, in edges of regions from the first one's centre; `level` as in spectral_weights_factors. */
+static float place(uint32_t n, uint32_t i, uint32_t level, uint32_t levels)
 {
-	const float cell = (float)spectrum_cell(n, i, step, levels);
-	return fminf(fmaxf((cell + 0.5f) / (float)spectrum_extent(n, step) * EDGE - 0.5f, 0), EDGE - 1);
+	const uint32_t all = spectrum_extent(n, level), low = level < levels ? spectrum_extent(n, level + 1) : all;
+	/* Even cells of the step's line became coarse coefficients, odd ones details. */
+	const float cell = level == levels ? (float)i : i < low ? (float)(2 * i) : (float)(2 * (i - low) + 1);
+	return fminf(fmaxf((cell + 0.5f) / (float)all * EDGE - 0.5f, 0), EDGE - 1);
 }
 
 void spectral_weights_factors(struct lattice_dims d, const uint8_t weights[SPECTRAL_WEIGHTS], float *factor)
@@ -22,8 +24,10 @@ void spectral_weights_factors(struct lattice_dims d, const uint8_t weights[SPECT
 
 	for (uint32_t i = 0; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			const uint32_t step = spectrum_step(d, levels, i, j);
-			const float y = place(d.theta_h, i, step, levels), x = place(d.theta_d, j, step, levels);
+			uint32_t level = 0; /* the step whose details it is of; `levels`: none's */
+			while (level < levels && i < spectrum_extent(d.theta_h, level + 1) && j < spectrum_extent(d.theta_d, level + 1))
+				level++;
+			const float y = place(d.theta_h, i, level, levels), x = place(d.theta_d, j, level, levels);
 			const uint32_t row = y < EDGE - 1 ? (uint32_t)y : EDGE - 2, column = x < EDGE - 1 ? (uint32_t)x : EDGE - 2;
 			const float down = y - (float)row, right = x - (float)column;
 			const uint8_t *w = weights + row * EDGE + column;

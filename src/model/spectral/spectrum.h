@@ -39,22 +39,6 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d);
 /* Coefficients of an axis of n cells that step l of the wavelet works on: halved l times, rounding up. */
 static inline uint32_t spectrum_extent(uint32_t n, uint32_t l) { return (n + (1u << l) - 1) >> l; }
 
-/* The step whose details the coefficient in row i, column j is one of; `levels`: none's, it is in the coarsest band. */
-static inline uint32_t spectrum_step(struct lattice_dims d, uint32_t levels, uint32_t i, uint32_t j)
-{
-	uint32_t step = 0;
-	while (step < levels && i < spectrum_extent(d.theta_h, step + 1) && j < spectrum_extent(d.theta_d, step + 1))
-		step++;
-	return step;
-}
-
-/* The cell of the step's line that became coefficient i of an axis of n cells: even ones became coarse coefficients, odd ones details. */
-static inline uint32_t spectrum_cell(uint32_t n, uint32_t i, uint32_t step, uint32_t levels)
-{
-	const uint32_t low = spectrum_extent(n, step + 1);
-	return step == levels ? i : i < low ? 2 * i : 2 * (i - low) + 1;
-}
-
 static inline uint32_t spectrum_lane(uint32_t phi_d, uint32_t harmonic)
 {
 	return harmonic / 2 + (harmonic % 2 ? (phi_d + 1) / 2 : 0);

@@ -8,6 +8,15 @@
 #include "error.h"
 #include "spectral_kernels.h"
 
+/* One axis of `here` coefficients of one step, coarse ones first: where the i-th belongs among them, and its gain in that step. */
+static uint32_t step_place(uint32_t i, uint32_t here, float *gain)
+{
+	const uint32_t low = (here + 1) / 2;
+	/* As floats, because the forward transform's are. */
+	*gain = i < low ? 1 / SPECTRUM_GAIN : SPECTRUM_GAIN;
+	return i < low ? 2 * i : 2 * (i - low) + 1;
+}
+
 static void places_fill(struct spectrum_inverse *t)
 {
 	const struct lattice_dims d = t->dims;
@@ -16,15 +25,17 @@ static void places_fill(struct spectrum_inverse *t)
 
 	for (uint32_t i = 0; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			const uint32_t l = spectrum_step(d, t->levels, i, j);
-			const uint32_t y = spectrum_cell(d.theta_h, i, l, t->levels), x = spectrum_cell(d.theta_d, j, l, t->levels);
-			double product = 1;
-			if (l < t->levels) /* as floats, because the forward transform's gains are */
-				product =
-					(double)(y % 2 ? SPECTRUM_GAIN : 1 / SPECTRUM_GAIN) * (double)(x % 2 ? SPECTRUM_GAIN : 1 / SPECTRUM_GAIN);
+			/* The coarsest step whose coefficients reach so far has it among its own; the last one's low ones are of the coarsest band. */
+			uint32_t l = 0;
+			while (l < t->levels && i < spectrum_extent(d.theta_h, l + 1) && j < spectrum_extent(d.theta_d, l + 1))
+				l++;
+			float gain[2] = {1, 1};
+			const uint32_t y = l < t->levels ? step_place(i, spectrum_extent(d.theta_h, l), &gain[0]) : i;
+			const uint32_t x = l < t->levels ? step_place(j, spectrum_extent(d.theta_d, l), &gain[1]) : j;
+			double product = (double)gain[0] * (double)gain[1];
+			t->place[i * d.theta_d + j] = (y << l) * d.theta_d + (x << l);
 			for (uint32_t k = 0; k < l; k++)
 				product *= coarser;
-			t->place[i * d.theta_d + j] = (y << l) * d.theta_d + (x << l);
 			t->gain[i * d.theta_d + j] = (float)product;
 		}
 }
