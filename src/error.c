@@ -20,6 +20,13 @@ bp_status error_set(bp_error *error, bp_status status, uint64_t offset, const ch
 	return status;
 }
 
+bp_status error_shift(bp_status status, uint64_t base, bp_error *error)
+{
+	if (status && error && error->offset != BP_NO_OFFSET)
+		error->offset += base;
+	return status;
+}
+
 bp_status error_memory(bp_error *error, size_t bytes)
 {
 	return error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "out of memory (%zu bytes wanted)", bytes);

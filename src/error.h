@@ -17,6 +17,9 @@
 bp_status error_set(bp_error *error, bp_status status, uint64_t offset, const char *format, ...)
 	__attribute__((format(printf, 4, 5)));
 
+/* An offset within a part becomes one within what the part begins at `base` of; returns status. */
+bp_status error_shift(bp_status status, uint64_t base, bp_error *error);
+
 /* The message of a failed allocation of `bytes`; returns BP_ERROR_MEMORY. */
 bp_status error_memory(bp_error *error, size_t bytes);
 

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "model/table/direction.h"
+#include "trilinear.h"
 
 static uint64_t state = 7;
 static double uniform(void)

@@ -1,4 +1,4 @@
-/* fill.h: valid cells stay, filled ones are smooth, bounded and periodic. */
+/* fill.h: valid cells stay, filled ones are smooth and bounded. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,11 +19,10 @@ static double uniform(void)
 	return (double)(state >> 11) * 0x1p-53;
 }
 
-static void fill_once(uint32_t rows, uint32_t columns, bool wrap_rows, bool wrap_columns, float *plane, const uint8_t *valid,
-                      float empty)
+static void fill_once(uint32_t rows, uint32_t columns, float *plane, const uint8_t *valid, float empty)
 {
 	struct fill *fill;
-	assert_int_equal(fill_create(rows, columns, wrap_rows, wrap_columns, &fill, NULL), BP_OK);
+	assert_int_equal(fill_create(rows, columns, &fill, NULL), BP_OK);
 	fill_plane(fill, plane, valid, empty);
 	fill_free(fill);
 }
@@ -37,7 +36,7 @@ static void valid_cells_stay_and_filled_ones_lie_between_them(void **user)
 	uint8_t valid[90 * 180];
 	for (int q = 0; q < 6; q++)
 		for (int s = 0; s < 4; s++)
-			for (int wrap = 0; wrap < 4; wrap++) {
+			for (int turn = 0; turn < 4; turn++) {
 				size_t n = extents[q][0] * extents[q][1];
 				float low = INFINITY, high = -INFINITY;
 				for (size_t i = 0; i < n; i++) {
@@ -46,7 +45,7 @@ static void valid_cells_stay_and_filled_ones_lie_between_them(void **user)
 					low = valid[i] ? fminf(low, plane[i]) : low;
 					high = valid[i] ? fmaxf(high, plane[i]) : high;
 				}
-				fill_once(extents[q][0], extents[q][1], wrap & 1, wrap & 2, plane, valid, 0);
+				fill_once(extents[q][0], extents[q][1], plane, valid, 0);
 				for (size_t i = 0; i < n; i++) {
 					if (valid[i])
 						assert_true(plane[i] == copy[i]);
@@ -64,7 +63,7 @@ static void a_single_valid_cell_fills_everything(void **user)
 		plane[i] = -1;
 	valid[100] = 1;
 	plane[100] = 2.5f;
-	fill_once(13, 17, false, true, plane, valid, 0);
+	fill_once(13, 17, plane, valid, 0);
 	for (int i = 0; i < 13 * 17; i++)
 		assert_true(plane[i] == 2.5f);
 }
@@ -74,7 +73,7 @@ static void without_any_valid_cell_the_given_value_stands(void **user)
 	(void)user;
 	float plane[20] = {0};
 	const uint8_t valid[20] = {0};
-	fill_once(4, 5, false, true, plane, valid, 7);
+	fill_once(4, 5, plane, valid, 7);
 	for (int i = 0; i < 20; i++)
 		assert_true(plane[i] == 7);
 }
@@ -90,32 +89,26 @@ static void a_hole_in_a_ramp_is_closed_by_the_ramp(void **user)
 		valid[i] = !(r >= 10 && r < 22 && c >= 8 && c < 20);
 		plane[i] = valid[i] ? (float)r : 0;
 	}
-	fill_once(32, 32, false, true, plane, valid, 0);
+	fill_once(32, 32, plane, valid, 0);
 	for (int i = 0; i < 32 * 32; i++)
 		assert_true(fabsf(plane[i] - (float)(i / 32)) < 0.2f);
 }
 
-/* A gap across the seam of a periodic axis is bridged from both sides; without the wrap it only continues. */
-static void a_gap_at_the_seam_is_bridged(void **user)
+/* Towards a border a table goes on as it is: nothing comes round from the other side. */
+static void a_gap_at_the_border_continues_what_is_beside_it(void **user)
 {
 	(void)user;
 	float plane[4 * 64];
 	uint8_t valid[4 * 64];
-	for (int wrap = 0; wrap < 2; wrap++) {
-		for (int i = 0; i < 4 * 64; i++) {
-			int c = i % 64;
-			valid[i] = c >= 8 && c < 56;
-			plane[i] = c >= 32 ? 1 : 0;
-		}
-		fill_once(4, 64, false, wrap, plane, valid, 0);
-		float step = 0;
-		for (int c = 55; c < 72; c++)
-			step = fmaxf(step, fabsf(plane[(c + 1) % 64] - plane[c % 64]));
-		if (wrap)
-			assert_true(step < 0.12f); /* 1 falls to 0 over 17 cells */
-		else
-			assert_true(fabsf(plane[63] - 1) < 0.01f && fabsf(plane[0]) < 0.01f);
+	for (int i = 0; i < 4 * 64; i++) {
+		int c = i % 64;
+		valid[i] = c >= 8 && c < 56;
+		plane[i] = c >= 32 ? 1 : 0;
 	}
+	fill_once(4, 64, plane, valid, 0);
+	for (int r = 0; r < 4; r++)
+		for (int c = 0; c < 8; c++)
+			assert_true(fabsf(plane[r * 64 + c]) < 0.01f && fabsf(plane[r * 64 + 63 - c] - 1) < 0.01f);
 }
 
 /* Filled cells obey the membrane's equation closely. */
@@ -131,13 +124,11 @@ static void filled_cells_are_near_the_mean_of_their_neighbours(void **user)
 			valid[r * C + c] = r < 50 + 30 * sin(3.14159 * c / C);
 			plane[r * C + c] = valid[r * C + c] ? (float)(sin(0.1 * r) + cos(2 * 3.14159 * c / C)) : 100;
 		}
-	fill_once(R, C, false, true, plane, valid, 0);
+	fill_once(R, C, plane, valid, 0);
 	for (int r = 1; r < R - 1; r++)
-		for (int c = 0; c < C; c++)
+		for (int c = 1; c < C - 1; c++)
 			if (!valid[r * C + c]) {
-				float mean = (plane[(r - 1) * C + c] + plane[(r + 1) * C + c] + plane[r * C + (c + 1) % C] +
-				              plane[r * C + (c + C - 1) % C]) /
-				             4;
+				float mean = (plane[(r - 1) * C + c] + plane[(r + 1) * C + c] + plane[r * C + c + 1] + plane[r * C + c - 1]) / 4;
 				squares += (double)((plane[r * C + c] - mean) * (plane[r * C + c] - mean));
 				n++;
 			}
@@ -161,8 +152,8 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 		const struct fill_kernels *kernels = k ? &fill_kernels_avx2 : &fill_kernels_plain;
 		struct fill_level a = {R, C, fine[k], valid}, b = {R2, C2, coarse[k], up[k]};
 		missing[k] = kernels->fill_halve(&a, &b);
-		kernels->fill_interpolate(&b, &a, 0, 1, scratch);
-		kernels->fill_smooth(&a, 0, 1, 3, scratch);
+		kernels->fill_interpolate(&b, &a, scratch);
+		kernels->fill_smooth(&a, 3, scratch);
 	}
 	assert_true(missing[0] == missing[1]);
 	assert_memory_equal(fine[0], fine[1], sizeof fine[0]);
@@ -177,7 +168,7 @@ int main(void)
 		cmocka_unit_test(a_single_valid_cell_fills_everything),
 		cmocka_unit_test(without_any_valid_cell_the_given_value_stands),
 		cmocka_unit_test(a_hole_in_a_ramp_is_closed_by_the_ramp),
-		cmocka_unit_test(a_gap_at_the_seam_is_bridged),
+		cmocka_unit_test(a_gap_at_the_border_continues_what_is_beside_it),
 		cmocka_unit_test(filled_cells_are_near_the_mean_of_their_neighbours),
 		cmocka_unit_test(both_kernel_tables_give_the_same_bits),
 	};

@@ -132,11 +132,130 @@ static void hostile_index_pages_are_refused(void **state)
 		assert_int_equal(verify_with_page(cases[i].at, cases[i].value, cases[i].width), BP_ERROR_CORRUPT);
 }
 
+enum {
+	LONG_NAMES = 20,
+	ROOT_KEY = PAGE_HEAD_BYTES + 4 + 8 + 1 + 255 + 4
+}; /* where the root says with what its second leaf begins */
+
+/* An archive whose names are so long that its index has two leaves and a root, the last pages of the file; names: 255 letters each. */
+static uint8_t *two_leaves(const char *names[LONG_NAMES], size_t *bytes)
+{
+	static char name[LONG_NAMES][256];
+	for (size_t n = 0; n < LONG_NAMES; n++) {
+		memset(name[n], 'a' + (int)n, 255);
+		names[n] = name[n];
+	}
+	fixture_archive(fixture_path("o.bpk"), names, LONG_NAMES, 9);
+	return fixture_file_read(fixture_path("o.bpk"), bytes);
+}
+
+static void page_seal(uint8_t *page) { store_u32(page + PAGE_BYTES - 4, bytes_crc32(page, PAGE_BYTES - 4)); }
+
+/* `more` bytes of zeros or of what stands there already, put in at `at`, and a header that knows of them and of so many pages more. */
+static bp_status verify_with_more(const uint8_t *file, size_t bytes, size_t at, size_t more, uint32_t pages, bp_error *error)
+{
+	uint8_t *longer = calloc(1, bytes + more);
+	struct archive_header header;
+	assert_int_equal(archive_header_read(file, ARCHIVE_HEADER_BYTES, bytes, &header, NULL), BP_OK);
+	memcpy(longer, file, at);
+	if (pages)
+		memcpy(longer + at, file + at, more);
+	memcpy(longer + at + more, file + at, bytes - at);
+	header.file_bytes += more;
+	header.page_count += pages;
+	header.index_offset += pages ? 0 : more;
+	archive_header_write(&header, longer);
+	fixture_file_write(fixture_path("p.bpk"), longer, bytes + more);
+	free(longer);
+	return read_all(fixture_path("p.bpk"), error);
+}
+
+static void what_belongs_to_nothing_is_found(void **state)
+{
+	const char *names[LONG_NAMES];
+	size_t bytes;
+	bp_error error;
+	(void)state;
+	uint8_t *file = two_leaves(names, &bytes);
+	const size_t index = bytes - 3 * PAGE_BYTES;
+	assert_int_equal(verify_with_more(file, bytes, index, 0, 0, &error), BP_OK);
+	assert_int_equal(verify_with_more(file, bytes, index, 100, 0, &error), BP_ERROR_CORRUPT); /* between records and index */
+	assert_int_equal(error.offset, index);
+	/* a page that no other leads to: the second leaf once more */
+	assert_int_equal(verify_with_more(file, bytes, index + PAGE_BYTES, PAGE_BYTES, 1, &error), BP_ERROR_CORRUPT);
+	assert_int_equal(error.offset, index);
+	free(file);
+}
+
+static void an_index_that_contradicts_itself_is_refused(void **state)
+{
+	const char *names[LONG_NAMES];
+	size_t bytes;
+	bp_archive *archive = NULL;
+	struct index_page leaf = {0};
+	struct index_entry entry;
+	(void)state;
+	uint8_t *file = two_leaves(names, &bytes), *root = file + bytes - PAGE_BYTES, *second = root - PAGE_BYTES;
+
+	/* the root says another first name of the second leaf, still between those of the leaves */
+	uint8_t *key = root + ROOT_KEY + 8 + 1;
+	assert_memory_equal(key, second + PAGE_HEAD_BYTES + 17, 255);
+	key[254]--;
+	page_seal(root);
+	fixture_file_write(fixture_path("p.bpk"), file, bytes);
+	assert_int_equal(read_all(fixture_path("p.bpk"), NULL), BP_ERROR_CORRUPT);
+	key[254]++;
+	page_seal(root);
+
+	/* the second leaf ends before the last material */
+	const size_t last = PAGE_HEAD_BYTES + (size_t)(load_u16(second + 6) - 1) * (17 + 255);
+	second[6]--;
+	memset(second + last, 0, 17 + 255);
+	page_seal(second);
+	fixture_file_write(fixture_path("p.bpk"), file, bytes);
+	assert_int_equal(bp_archive_open(fixture_path("p.bpk"), &archive, NULL), BP_OK);
+	assert_int_equal(archive_entry(archive, LONG_NAMES - 2, &leaf, &entry, NULL), BP_OK);
+	assert_string_equal(entry.name, names[LONG_NAMES - 2]);
+	assert_int_equal(archive_entry(archive, LONG_NAMES - 1, &leaf, &entry, NULL), BP_ERROR_CORRUPT);
+	bp_archive_close(archive);
+	free(file);
+}
+
+/* Numbers at the end of their range: a sum with them must not come round to the front. */
+static void ordinals_beyond_all_numbers_are_no_materials(void **state)
+{
+	static const uint64_t ORDINALS[] = {UINT64_MAX, UINT64_MAX - 1, 20, UINT64_C(1) << 32};
+	const char *names[LONG_NAMES];
+	size_t bytes;
+	uint64_t index = 77;
+	(void)state;
+	uint8_t *file = two_leaves(names, &bytes), *root = file + bytes - PAGE_BYTES, *leaf = root - PAGE_BYTES,
+			*at = root + ROOT_KEY;
+	assert_memory_equal(at, leaf + 8, 8); /* the first number of the second leaf */
+	for (size_t n = 0; n < sizeof ORDINALS / sizeof *ORDINALS; n++) {
+		bp_archive *archive = NULL;
+		store_u32(at, (uint32_t)ORDINALS[n]);
+		store_u32(at + 4, (uint32_t)(ORDINALS[n] >> 32));
+		memcpy(leaf + 8, at, 8);
+		page_seal(leaf);
+		page_seal(root);
+		fixture_file_write(fixture_path("p.bpk"), file, bytes);
+		assert_int_equal(bp_archive_open(fixture_path("p.bpk"), &archive, NULL), BP_OK);
+		for (size_t k = 17; k < LONG_NAMES; k++)
+			assert_int_equal(bp_archive_find(archive, names[k], &index, NULL), BP_ERROR_CORRUPT);
+		assert_int_equal(bp_archive_verify(archive, 0, NULL, NULL, NULL), BP_ERROR_CORRUPT);
+		bp_archive_close(archive);
+	}
+	assert_int_equal(index, 77);
+	free(file);
+}
+
 static void two_entries_may_not_share_a_record(void **state)
 {
 	size_t bytes;
 	uint8_t *file, *page;
 	bp_archive *archive = NULL;
+	struct index_entry entry;
 	struct record_head head;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 3, 9);
@@ -147,8 +266,8 @@ static void two_entries_may_not_share_a_record(void **state)
 	fixture_file_write(fixture_path("s.bpk"), file, bytes);
 	assert_int_equal(read_all(fixture_path("s.bpk"), NULL), BP_ERROR_CORRUPT);
 	assert_int_equal(bp_archive_open(fixture_path("s.bpk"), &archive, NULL), BP_OK);
-	assert_int_equal(archive_record_head(archive, 0, &head, NULL), BP_OK);
-	assert_int_equal(archive_record_head(archive, 1, &head, NULL), BP_ERROR_CORRUPT);
+	assert_int_equal(archive_record_head(archive, 0, &entry, &head, NULL), BP_OK);
+	assert_int_equal(archive_record_head(archive, 1, &entry, &head, NULL), BP_ERROR_CORRUPT);
 	bp_archive_close(archive);
 	free(file);
 }
@@ -159,6 +278,9 @@ int main(void)
 		cmocka_unit_test(every_truncation_is_noticed),
 		cmocka_unit_test(every_flipped_bit_is_noticed_and_nothing_false_is_told),
 		cmocka_unit_test(hostile_index_pages_are_refused),
+		cmocka_unit_test(what_belongs_to_nothing_is_found),
+		cmocka_unit_test(an_index_that_contradicts_itself_is_refused),
+		cmocka_unit_test(ordinals_beyond_all_numbers_are_no_materials),
 		cmocka_unit_test(two_entries_may_not_share_a_record),
 	};
 	return cmocka_run_group_tests(tests, fixture_folder_make, fixture_folder_remove);

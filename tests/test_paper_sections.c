@@ -19,7 +19,6 @@ static void field_fill(struct lattice_dims dims, enum paper_field kind, uint32_t
 {
 	uint32_t cells = paper_plane_cells(dims, kind), index = 0;
 	*field = (struct sparse_field){.count = count, .step = count ? PAPER_STEP_ONE - 8 * 256 : 0};
-	paper_field_extents(dims, kind, &field->rows, &field->columns);
 	if (!count)
 		return;
 	field->index = malloc(count * sizeof *field->index);

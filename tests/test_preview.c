@@ -31,7 +31,7 @@ static void a_preview_holds_every_second_value(void **state)
 			assert_int_equal(expansion_alloc(dims, &whole, NULL), BP_OK);
 			assert_int_equal(expansion_alloc(small, &half, NULL), BP_OK);
 			assert_int_equal(model_expand(fitted, 0, &whole, &error), BP_OK);
-			assert_int_equal(model_expand_half(fitted, 0, &half, &error), BP_OK);
+			assert_int_equal(model_expand_half(fitted, &half, &error), BP_OK);
 			for (uint32_t i = 0; i < small.theta_h; i++)
 				for (uint32_t j = 0; j < small.theta_d; j++)
 					for (uint32_t k = 0; k < small.phi_d; k++)
@@ -40,7 +40,7 @@ static void a_preview_holds_every_second_value(void **state)
 							double b = (double)half.rgb[c][lattice_index(small, i, j, k)] * half.unit;
 							assert_true(fabs(a - b) <= 1e-4 * a);
 						}
-			assert_int_equal(model_expand_half(fitted, 0, &whole, &error), BP_ERROR_ARGUMENT);
+			assert_int_equal(model_expand_half(fitted, &whole, &error), BP_ERROR_ARGUMENT);
 			expansion_free(&whole);
 			expansion_free(&half);
 			model_free(fitted);

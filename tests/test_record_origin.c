@@ -125,6 +125,20 @@ static void other_versions_are_left_alone(void **state)
 	assert_null(record_origin_find(&head));
 }
 
+/* Who loads a material does not read this section. */
+static void what_is_told_as_read_was_read(const bp_archive *archive)
+{
+	const bp_load_options options = {.struct_bytes = sizeof options};
+	bp_loaded loaded = {.struct_bytes = sizeof loaded};
+	bp_material *material = NULL;
+	const uint64_t before = bp_archive_bytes_read(archive);
+	assert_int_equal(bp_material_load(archive, 0, &options, &material, NULL), BP_OK);
+	const uint64_t after = bp_archive_bytes_read(archive);
+	assert_int_equal(bp_material_loaded(material, &loaded, NULL), BP_OK);
+	assert_int_equal(loaded.read_bytes, after - before);
+	bp_material_free(material);
+}
+
 /* Through an archive, with a damaged byte and without. */
 static void an_archive_tells_it(void **state)
 {
@@ -155,6 +169,7 @@ static void an_archive_tells_it(void **state)
 		assert_int_equal(archive_entry(archive, 0, &leaf, &entry, NULL), BP_OK);
 		assert_int_equal(archive_entry_origin(archive, &entry, &head, &origin, &error), damaged ? BP_ERROR_CHECKSUM : BP_OK);
 		assert_true(damaged || origin.wavelengths == 195);
+		what_is_told_as_read_was_read(archive);
 		bp_archive_close(archive);
 	}
 	free(record);

@@ -16,6 +16,7 @@
 #include "merl/rgl_file.h"
 #include "merl/two_halves.h"
 #include "tensor_maker.h"
+#include "words.h"
 
 #define PI 3.14159265358979323846
 
@@ -53,12 +54,6 @@ static bp_status made_read(const struct made_file *made, struct lattice *lattice
 	const bp_status status = bytes_read(&bytes, lattice, origin, error);
 	byte_buffer_free(&bytes);
 	return status;
-}
-
-static void expect_words(const char *message, const char *words)
-{
-	if (!strstr(message, words))
-		fail_msg("\"%s\" lacks \"%s\"", message, words);
 }
 
 static void refused(const struct byte_buffer *bytes, const char *words)
@@ -309,6 +304,35 @@ static void reading_takes_no_more_than_16_times_the_file(void **state)
 	byte_buffer_free(&bytes);
 }
 
+/* What was known of the size may be wrong: a file grows while it is read, and some file systems tell no size. */
+static void a_file_of_another_size_than_was_told_is_read_to_its_end(void **state)
+{
+	(void)state;
+	struct made_file made = {0};
+	struct byte_buffer bytes = {0};
+	made_material(&made);
+	made_write(&made, &bytes);
+	const size_t whole = bytes.count;
+	const struct {
+		size_t told, more;
+	} cases[] = {{whole, 0}, {whole, 1}, {whole, 100000}, {0, 100000}, {5, 0}};
+	alarm(20); /* rather than for ever */
+	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+		bytes.count = whole;
+		write_zeros(&bytes, cases[n].more);
+		struct memory memory = {.bytes = bytes.bytes, .count = bytes.count, .at = TENSOR_MAGIC_BYTES};
+		struct input input = {.read = memory_read, .user = &memory, .available = cases[n].told, .done = TENSOR_MAGIC_BYTES};
+		struct lattice lattice = {0};
+		struct origin origin;
+		assert_int_equal(rgl_file_read(&input, bytes.bytes, &lattice, &origin, NULL), BP_OK);
+		assert_true(memory.at == bytes.count && lattice.valid_count > 0);
+		lattice_free(&lattice);
+	}
+	alarm(0);
+	byte_buffer_free(&bytes);
+	made_free(&made);
+}
+
 static void foreign_files_are_called_what_they_are(void **state)
 {
 	(void)state;
@@ -410,6 +434,7 @@ int main(void)
 		cmocka_unit_test(every_beginning_of_a_tensor_file_is_refused),
 		cmocka_unit_test(an_anisotropic_file_is_refused_early),
 		cmocka_unit_test(reading_takes_no_more_than_16_times_the_file),
+		cmocka_unit_test(a_file_of_another_size_than_was_told_is_read_to_its_end),
 		cmocka_unit_test(foreign_files_are_called_what_they_are),
 		cmocka_unit_test(two_halves_are_joined_where_they_agree),
 		cmocka_unit_test(two_halves_that_disagree_are_refused_with_the_number),

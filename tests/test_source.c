@@ -17,6 +17,7 @@
 
 #include "merl/source.h"
 #include "merl/source_kind.h"
+#include "words.h"
 
 static char folder[64];
 
@@ -84,12 +85,6 @@ static bp_error scan_fails(const char *name, bp_status expected)
 	noticed[0] = '\0';
 	assert_int_equal(source_scan(inputs, 1, &watched, &list, &error), expected);
 	return error;
-}
-
-static void expect_words(const char *text, const char *words)
-{
-	if (!strstr(text, words))
-		fail_msg("\"%s\" lacks \"%s\"", text, words);
 }
 
 /* --- containers --- */

@@ -80,23 +80,6 @@ static void span_forward_is_the_sum_written_out(void **unused)
 	}
 }
 
-static struct spectrum_term *terms_of(const struct spectrum_inverse *inverse, const float *spectrum, uint32_t *start)
-{
-	const struct lattice_dims d = inverse->dims;
-	struct spectrum_term *terms = malloc((lattice_cells(d) + 1) * sizeof *terms);
-	uint32_t n = 0;
-	for (uint32_t m = 0; m < d.phi_d; m++) {
-		start[m] = n;
-		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
-			const float value = spectrum[(size_t)r * d.phi_d + spectrum_lane(d.phi_d, m)];
-			if (value != 0)
-				terms[n++] = spectrum_term_make(inverse, r, value);
-		}
-	}
-	start[d.phi_d] = n;
-	return terms;
-}
-
 /* Whole, or every second cell along all axes. */
 static float *inverse_of(struct lattice_dims d, const float *spectrum, bool half)
 {

@@ -164,6 +164,24 @@ static void a_single_valid_cell_is_the_whole_table(void **unused)
 	lattice_free(&lattice);
 }
 
+/* A model that was fitted holds coefficients, of which a record keeps what its budget allows: nobody asks for its values. */
+static void only_a_decoded_model_has_values(void **unused)
+{
+	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = 3000, .effort = 5};
+	struct lattice lattice;
+	struct model *model = NULL;
+	struct expansion table = {0}, half = {0};
+	(void)unused;
+	lattice_make((struct lattice_dims){20, 18, 14}, &lattice);
+	assert_int_equal(model_fit(&lattice, &options, &model, NULL), BP_OK);
+	assert_int_equal(model_expand(model, 0, &table, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(model_expand_half(model, &half, NULL), BP_ERROR_ARGUMENT);
+	expansion_free(&table);
+	expansion_free(&half);
+	model_free(model);
+	lattice_free(&lattice);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -172,6 +190,7 @@ int main(void)
 		cmocka_unit_test(the_unit_is_a_hundredth_of_the_middle),
 		cmocka_unit_test(units_of_degenerate_tables_are_as_documented),
 		cmocka_unit_test(a_single_valid_cell_is_the_whole_table),
+		cmocka_unit_test(only_a_decoded_model_has_values),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

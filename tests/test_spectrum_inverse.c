@@ -13,24 +13,6 @@
 #include "model/spectral/spectrum_inverse.h"
 #include "random_tables.h"
 
-/* All terms of a spectrum that are not 0, by harmonic. */
-static struct spectrum_term *terms_of(const struct spectrum_inverse *inverse, const float *spectrum, uint32_t *start)
-{
-	const struct lattice_dims d = inverse->dims;
-	struct spectrum_term *terms = malloc(lattice_cells(d) * sizeof *terms);
-	uint32_t n = 0;
-	for (uint32_t m = 0; m < d.phi_d; m++) {
-		start[m] = n;
-		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
-			const float value = spectrum[(size_t)r * d.phi_d + spectrum_lane(d.phi_d, m)];
-			if (value != 0)
-				terms[n++] = spectrum_term_make(inverse, r, value);
-		}
-	}
-	start[d.phi_d] = n;
-	return terms;
-}
-
 /* The table of a spectrum, block by block. */
 static float *inverse_of(struct lattice_dims d, const float *spectrum)
 {

@@ -75,7 +75,7 @@ static void half_values(const struct model *model, enum table_form form, int cha
 		return;
 	}
 	assert_int_equal(expansion_alloc(dims, &expansion, NULL), BP_OK);
-	assert_int_equal(model_expand_half(model, 0, &expansion, NULL), BP_OK);
+	assert_int_equal(model_expand_half(model, &expansion, NULL), BP_OK);
 	assert_int_equal(table_build_model(model, true, form, channels, &half, NULL), BP_OK);
 	assert_int_equal(table_build_model(model, false, form, channels, &whole, NULL), BP_OK);
 	double most = 0; /* beside it a value near 0 is rounded as its neighbours are */

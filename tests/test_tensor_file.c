@@ -9,12 +9,7 @@
 #include <cmocka.h>
 
 #include "tensor_maker.h"
-
-static void expect_words(const char *message, const char *words)
-{
-	if (!strstr(message, words))
-		fail_msg("\"%s\" lacks \"%s\"", message, words);
-}
+#include "words.h"
 
 static void refused(const struct byte_buffer *file, const char *words)
 {

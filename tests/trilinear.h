@@ -9,6 +9,17 @@
 
 #include "model/table/direction.h"
 
+/* One pair of directions as the kernels place it. False, and *out 0, where it is unusable. */
+static inline bool direction_to_lattice(struct lattice_dims dims, const float wi[3], const float wo[3], struct lattice_point *out)
+{
+	f32x4 at;
+	*out = (struct lattice_point){0};
+	if (!direction_locate(lattice_scale_of(dims), wi, wo, &at))
+		return false;
+	*out = (struct lattice_point){at[0], at[1], at[2]};
+	return true;
+}
+
 /* The value of cell (i, j, k), of the first or last one where there is none along theta_h or theta_d. */
 static inline double cell_value(const struct expansion *e, int channel, int i, int j, int k)
 {

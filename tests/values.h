@@ -14,8 +14,9 @@ FIXTURE void values_write(const char *archive_path, const char *path)
 	assert_non_null(file);
 	assert_int_equal(bp_archive_open(archive_path, &archive, NULL), BP_OK);
 	for (uint64_t m = 0; m < bp_archive_count(archive); m++) {
+		struct index_entry entry;
 		struct record_head head;
-		assert_int_equal(archive_record_head(archive, m, &head, NULL), BP_OK);
+		assert_int_equal(archive_record_head(archive, m, &entry, &head, NULL), BP_OK);
 		for (uint32_t layers = 1; layers <= head.layer_count; layers++) {
 			struct expansion table = {0};
 			struct model *model = NULL;

@@ -32,7 +32,6 @@ FIXTURE void vector_field(struct lattice_dims dims, enum paper_field kind, uint3
 {
 	uint32_t next = 0, room = paper_plane_cells(dims, kind);
 	*field = (struct sparse_field){.count = count, .step = count ? step : 0};
-	paper_field_extents(dims, kind, &field->rows, &field->columns);
 	if (!count)
 		return;
 	field->index = malloc(count * sizeof *field->index);

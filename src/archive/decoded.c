@@ -81,7 +81,6 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
                            bp_error *error)
 {
 	const bp_table_options usual = {.struct_bytes = sizeof usual};
-	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
 	struct model *model = NULL;
@@ -89,11 +88,8 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
 
 	options = options ? options : &usual;
 	bp_status status = options_check(options, error);
-	leaf.count = 0;
 	if (!status)
-		status = archive_entry(archive, index, &leaf, &entry, error);
-	if (!status)
-		status = archive_entry_head(archive, &entry, &head, error);
+		status = archive_record_head(archive, index, &entry, &head, error);
 	if (status)
 		return status;
 	const size_t wanted = bp_table_bytes(head.dims.theta_h, head.dims.theta_d, head.dims.phi_d, options);

@@ -19,6 +19,9 @@ struct index_entry {
 	char name[256]; /* NUL-terminated */
 };
 
+/* Bytes of a page's entry before its name; the name's length is the last of them. */
+static inline size_t index_fixed_bytes(uint32_t level) { return level ? 4 + 8 + 1 : 8 + 4 + 4 + 1; }
+
 /* -- writing -- */
 
 struct index_builder {

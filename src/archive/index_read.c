@@ -5,14 +5,10 @@
 #include "error.h"
 #include "index.h"
 
-enum { LEAF_FIXED = 8 + 4 + 4 + 1, INNER_FIXED = 4 + 8 + 1 };
-
-static size_t page_fixed_bytes(const struct index_page *page) { return page->level ? INNER_FIXED : LEAF_FIXED; }
-
 const char *index_entry_name(const struct index_page *page, uint32_t i, uint32_t *name_bytes)
 {
 	const uint8_t *entry = page->bytes + page->entry_at[i];
-	size_t fixed = page_fixed_bytes(page);
+	size_t fixed = index_fixed_bytes(page->level);
 	*name_bytes = entry[fixed - 1];
 	return (const char *)entry + fixed;
 }
@@ -76,7 +72,7 @@ uint32_t index_search_ordinal(const struct index_page *page, uint64_t ordinal)
 /* The entry at `at`: fits the page, has a legal name above the one before, and plausible numbers. */
 static bp_status entry_check(const struct index_page *page, uint32_t i, size_t at, size_t *next, bp_error *error)
 {
-	size_t fixed = page_fixed_bytes(page), name_bytes;
+	size_t fixed = index_fixed_bytes(page->level), name_bytes;
 	const char *fault;
 	if (at + fixed > PAGE_BYTES - 4 || at + fixed + page->bytes[at + fixed - 1] > PAGE_BYTES - 4)
 		return error_set(error, BP_ERROR_CORRUPT, at, "index entry %u does not fit its page", i);

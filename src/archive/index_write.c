@@ -20,9 +20,6 @@ void index_builder_free(struct index_builder *builder)
 	builder->count = 0;
 }
 
-/* Bytes before the name in an entry of this level; the name's length is the last of them. */
-static size_t entry_fixed_bytes(uint32_t level) { return level ? 4 + 8 + 1 : 8 + 4 + 4 + 1; }
-
 /*
  * Packs the entries of one level into pages, each as full as it gets, and notes in *above the inner
  * entry that leads to each page.
@@ -30,7 +27,7 @@ static size_t entry_fixed_bytes(uint32_t level) { return level ? 4 + 8 + 1 : 8 +
 static bp_status level_write(const struct byte_buffer *entries, uint32_t level, index_page_fn *write, void *user,
                              uint32_t *page_number, struct byte_buffer *above, uint32_t *pages, bp_error *error)
 {
-	size_t fixed = entry_fixed_bytes(level), at = 0;
+	size_t fixed = index_fixed_bytes(level), at = 0;
 	uint64_t ordinal = 0;
 	*pages = 0;
 	while (at < entries->count) {

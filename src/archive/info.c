@@ -38,16 +38,6 @@ static void info_fill(const struct record_head *head, uint64_t offset, bp_materi
 	info->zeros = (uint32_t)head->options.zeros;
 }
 
-/* The head of material `index`, and where its record is. */
-static bp_status head_find(const bp_archive *archive, uint64_t index, struct index_entry *entry, struct record_head *head,
-                           bp_error *error)
-{
-	struct index_page leaf;
-	leaf.count = 0;
-	const bp_status status = archive_entry(archive, index, &leaf, entry, error);
-	return status ? status : archive_entry_head(archive, entry, head, error);
-}
-
 bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material_info *info, bp_error *error)
 {
 	struct index_entry entry;
@@ -56,7 +46,7 @@ bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material
 	bp_status status;
 	if (!info || info->struct_bytes != sizeof full)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_material_info)");
-	status = head_find(archive, index, &entry, &head, error);
+	status = archive_record_head(archive, index, &entry, &head, error);
 	if (status)
 		return status;
 	info_fill(&head, entry.offset, &full);
@@ -82,7 +72,7 @@ bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t el
 	struct record_head head;
 	bp_status status = element_check(element_bytes, sizeof *layers, layers, capacity, error);
 	if (!status)
-		status = head_find(archive, index, &entry, &head, error);
+		status = archive_record_head(archive, index, &entry, &head, error);
 	if (status)
 		return status;
 	for (uint32_t l = 0; l < head.layer_count && l < capacity; l++) {
@@ -102,7 +92,7 @@ bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t 
 	struct record_head head;
 	bp_status status = element_check(element_bytes, sizeof *sections, sections, capacity, error);
 	if (!status)
-		status = head_find(archive, index, &entry, &head, error);
+		status = archive_record_head(archive, index, &entry, &head, error);
 	if (status)
 		return status;
 	for (uint32_t i = 0; i < head.section_count && i < capacity; i++) {

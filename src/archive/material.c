@@ -70,15 +70,6 @@ static bp_status channel_sections_keep(struct record_head *head, uint32_t channe
 	return BP_OK;
 }
 
-static uint32_t bytes_to_read(const struct record_head *head, uint32_t layers)
-{
-	uint32_t bytes = head->head_bytes;
-	for (uint32_t n = 0; n < head->section_count; n++)
-		if (head->sections[n].layer < layers)
-			bytes += head->sections[n].bytes;
-	return bytes;
-}
-
 static bp_status material_build(const struct model *model, const bp_load_options *options, bp_material *material, bp_error *error)
 {
 	struct lattice_dims half;
@@ -132,7 +123,6 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
                            bp_error *error)
 {
 	const bp_load_options whole = {.struct_bytes = sizeof whole};
-	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
 	bp_material *material = NULL;
@@ -143,10 +133,7 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	status = options_check(options, error);
 	if (status)
 		return status;
-	leaf.count = 0;
-	status = archive_entry(archive, index, &leaf, &entry, error);
-	if (!status)
-		status = archive_entry_head(archive, &entry, &head, error);
+	status = archive_record_head(archive, index, &entry, &head, error);
 	if (!status)
 		status = need_check(&head, options->max_memory_bytes, error);
 	if (status)
@@ -172,7 +159,7 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 		.struct_bytes = sizeof material->loaded,
 		.layers = layers,
 		.log_rmse = head.layers[layers - 1].fidelity.log_rmse,
-		.read_bytes = bytes_to_read(&head, layers),
+		.read_bytes = record_bytes_needed(&head, layers),
 		.memory_bytes = sizeof *material + table_bytes(material->table) +
 	                    (material->sampler ? sampler_bytes(material->sampler) + albedo_cache_bytes() : 0),
 		.form = material->loaded.form,

@@ -7,14 +7,6 @@
 #include "name.h"
 #include "writer.h"
 
-static uint32_t layers_wanted(const struct record_head *head, double max_log_rmse)
-{
-	for (uint32_t n = 0; max_log_rmse > 0 && n < head->layer_count; n++)
-		if (head->layers[n].fidelity.seen_log_rmse <= max_log_rmse)
-			return n + 1;
-	return head->layer_count;
-}
-
 /* What all shards of one build have in common, from the first record seen. */
 struct likeness {
 	bool known;
@@ -67,7 +59,7 @@ static bp_status record_copy(const struct bp_archive *archive, const struct inde
 		free(record);
 		return status;
 	}
-	const uint32_t layers = layers_wanted(&head, options->max_log_rmse);
+	const uint32_t layers = record_layers_for(&head, options->max_log_rmse);
 	size_t bytes = head.record_bytes;
 	if (layers < head.layer_count)
 		status = record_keep_layers(record, head.record_bytes, layers, &kept, &bytes, error);
@@ -285,18 +277,14 @@ bp_status archive_merge(const struct bp_archive *const *archives, size_t count, 
 bp_status archive_reuse(const struct bp_archive *archive, const char *name, const struct record_source *source,
                         const struct fit_options *options, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
-	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
 	uint64_t index;
 
 	*record = NULL;
-	leaf.count = 0;
 	bp_status status = bp_archive_find(archive, name, &index, error);
 	if (!status)
-		status = archive_entry(archive, index, &leaf, &entry, error);
-	if (!status)
-		status = archive_entry_head(archive, &entry, &head, error);
+		status = archive_record_head(archive, index, &entry, &head, error);
 	if (status == BP_ERROR_MEMORY || status == BP_ERROR_IO)
 		return status;
 	if (status || !record_answers(&head, source, options))

@@ -16,14 +16,6 @@ struct bp_archive {
 	struct index_page root;       /* count 0 when the archive is empty */
 };
 
-/* Turns an offset within a structure into one within the file. */
-static bp_status offset_shift(bp_status status, uint64_t base, bp_error *error)
-{
-	if (status && error && error->offset != BP_NO_OFFSET)
-		error->offset += base;
-	return status;
-}
-
 bp_status archive_read(const struct bp_archive *archive, uint64_t offset, void *bytes, size_t count, bp_error *error)
 {
 	size_t got = 0;
@@ -61,7 +53,7 @@ bp_status archive_page_read(const struct bp_archive *archive, const struct page_
 		                 archive->header.page_count);
 	status = archive_read(archive, offset, page->bytes, PAGE_BYTES, error);
 	if (!status)
-		status = offset_shift(index_page_read(page, expect, error), offset, error);
+		status = error_shift(index_page_read(page, expect, error), offset, error);
 	if (status)
 		page->count = 0;
 	return status;
@@ -251,9 +243,9 @@ bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t 
 	here = i == UINT32_MAX ? "" : index_entry_name(&leaf, i, &bytes);
 	if (i == UINT32_MAX || name_compare(here, bytes, name, strlen(name)) != 0)
 		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material \"%s\"", name);
-	if (leaf.first_ordinal + i >= archive->header.count)
+	if (leaf.first_ordinal >= archive->header.count || i >= archive->header.count - leaf.first_ordinal)
 		return error_set(error, BP_ERROR_CORRUPT, archive->header.index_offset + (uint64_t)leaf.number * PAGE_BYTES,
-		                 "the index numbers \"%s\" %llu of %llu", name, (unsigned long long)leaf.first_ordinal + i,
+		                 "the index numbers \"%s\" %llu of %llu", name, (unsigned long long)(leaf.first_ordinal + i),
 		                 (unsigned long long)archive->header.count);
 	*index = leaf.first_ordinal + i;
 	return BP_OK;
@@ -289,7 +281,7 @@ bp_status archive_entry_head(const struct bp_archive *archive, const struct inde
 	if (!status)
 		status = archive_read(archive, entry->offset, bytes, entry->head_bytes, error);
 	if (!status)
-		status = offset_shift(record_head_read(bytes, entry->head_bytes, &head, error), entry->offset, error);
+		status = error_shift(record_head_read(bytes, entry->head_bytes, &head, error), entry->offset, error);
 	if (!status)
 		status = head_check(entry, &head, error);
 	if (!status)
@@ -310,7 +302,7 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 		return error_memory(error, entry->record_bytes);
 	status = archive_read(archive, entry->offset, record, entry->record_bytes, error);
 	if (!status)
-		status = offset_shift(record_verify(record, entry->record_bytes, &head, error), entry->offset, error);
+		status = error_shift(record_verify(record, entry->record_bytes, &head, error), entry->offset, error);
 	if (!status)
 		status = head_check(entry, &head, error);
 	if (status) {
@@ -322,12 +314,11 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 	return BP_OK;
 }
 
-bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct record_head *head, bp_error *error)
+bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct index_entry *entry,
+                              struct record_head *head, bp_error *error)
 {
 	struct index_page leaf;
-	struct index_entry entry;
-	bp_status status;
 	leaf.count = 0;
-	status = archive_entry(archive, index, &leaf, &entry, error);
-	return status ? status : archive_entry_head(archive, &entry, head, error);
+	const bp_status status = archive_entry(archive, index, &leaf, entry, error);
+	return status ? status : archive_entry_head(archive, entry, head, error);
 }

@@ -42,8 +42,9 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 bp_status archive_entry_origin(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                                struct origin *out, bp_error *error);
 
-/* Reads and checks the head of material `index` (0..count-1, in name order). */
-bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct record_head *head, bp_error *error);
+/* Entry and head of material `index` (0..count-1, in name order). */
+bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct index_entry *entry,
+                              struct record_head *head, bp_error *error);
 
 /* Loads layers 0..layers-1 (0: all) of material `index`; reads the sections of these layers only. */
 bp_status archive_model_load(const struct bp_archive *archive, uint64_t index, uint32_t layers, struct model **out,

@@ -16,10 +16,5 @@ bp_status archive_entry_origin(const struct bp_archive *archive, const struct in
 	bp_status status = archive_read(archive, at, bytes, sizeof bytes, error);
 	if (!status && bytes_crc32(bytes, sizeof bytes) != section->crc32)
 		status = error_set(error, BP_ERROR_CHECKSUM, at, "the checksum of a section of type %u differs", section->type);
-	if (status)
-		return status;
-	status = record_origin_parse(bytes, out, error);
-	if (status && error && error->offset != BP_NO_OFFSET)
-		error->offset += at;
-	return status;
+	return status ? status : error_shift(record_origin_parse(bytes, out, error), at, error);
 }

@@ -78,18 +78,15 @@ static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, 
 /* A record at `offset`? *next is where to look on. */
 static bp_status record_try(struct scan *scan, uint64_t offset, uint64_t *next, bp_error *error)
 {
-	struct record_head head;
+	struct record_head head, whole;
 	uint32_t head_bytes, record_bytes;
-	size_t there = scan_read(scan, offset, scan->record, RECORD_HEAD_BYTES_MAX);
+	const size_t there = scan_read(scan, offset, scan->record, RECORD_HEAD_BYTES_MAX);
 	bool intact;
 	*next = offset + 1;
 	if (there < RECORD_PROBE_BYTES || record_probe(scan->record, &head_bytes, &record_bytes, NULL) != BP_OK ||
 	    record_head_read(scan->record, there, &head, NULL) != BP_OK)
 		return BP_OK;
-	there = scan_read(scan, offset, scan->record, record_bytes);
-	intact = there == record_bytes;
-	for (uint32_t i = 0; intact && i < head.section_count; i++)
-		intact = bytes_crc32(scan->record + head.sections[i].offset, head.sections[i].bytes) == head.sections[i].crc32;
+	intact = record_verify(scan->record, scan_read(scan, offset, scan->record, record_bytes), &whole, NULL) == BP_OK;
 	*next = offset + (intact ? record_bytes : head_bytes);
 	if (scan->record_count == scan->count)
 		scan->record_count++;

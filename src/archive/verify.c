@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "environment.h"
 #include "name.h"
 #include "error.h"
 #include "reader.h"
@@ -66,8 +67,11 @@ static bp_status layers_check(const struct bp_archive *archive, const struct ind
 {
 	struct expansion table = {0};
 	bp_status status = BP_OK;
+	fenv_t before;
+	environment_enter(&before);
 	for (uint32_t l = 1; !status && l <= head->layer_count; l++)
 		status = layer_check(archive, entry, head, l, &table, error);
+	environment_leave(&before);
 	expansion_free(&table);
 	return status;
 }

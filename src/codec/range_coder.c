@@ -57,31 +57,17 @@ void range_encoder_end(struct range_encoder *encoder)
 		range_encoder_shift(encoder);
 }
 
-static uint32_t next_byte(struct range_decoder *decoder)
-{
-	uint32_t byte = decoder->at < decoder->count ? decoder->bytes[decoder->at] : 0;
-	decoder->at++;
-	return byte;
-}
-
 void range_decoder_start(struct range_decoder *decoder, const uint8_t *bytes, size_t count)
 {
 	*decoder = (struct range_decoder){.bytes = bytes, .count = count, .range = UINT32_MAX};
 	for (int i = 0; i < 4; i++)
-		decoder->code = decoder->code << 8 | next_byte(decoder);
+		range_decoder_shift(decoder);
 }
 
 uint32_t range_decode(struct range_decoder *decoder, struct bit_model *model)
 {
-	uint32_t bound = (decoder->range >> 16) * model->probability, bit = decoder->code >= bound;
-	if (bit) {
-		decoder->code -= bound;
-		decoder->range -= bound;
-	} else {
-		decoder->range = bound;
-	}
+	const uint32_t bit = range_decode_with(decoder, model->probability);
 	model_update(model, bit);
-	range_decoder_refill(decoder);
 	return bit;
 }
 

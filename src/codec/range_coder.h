@@ -76,12 +76,16 @@ struct range_decoder {
 void range_decoder_start(struct range_decoder *decoder, const uint8_t *bytes, size_t count);
 uint32_t range_decode(struct range_decoder *decoder, struct bit_model *model);
 uint32_t range_decode_even(struct range_decoder *decoder, uint32_t count);
+static inline void range_decoder_shift(struct range_decoder *decoder)
+{
+	decoder->code = decoder->code << 8 | (decoder->at < decoder->count ? decoder->bytes[decoder->at] : 0);
+	decoder->at++;
+}
 static inline void range_decoder_refill(struct range_decoder *decoder)
 {
 	while (decoder->range < 1u << 24) {
 		decoder->range <<= 8;
-		decoder->code = decoder->code << 8 | (decoder->at < decoder->count ? decoder->bytes[decoder->at] : 0);
-		decoder->at++;
+		range_decoder_shift(decoder);
 	}
 }
 /* Two ways that do not meet: whatever follows from the bit follows without asking for it again. */

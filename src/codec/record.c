@@ -48,6 +48,16 @@ static bool kind_among(const struct section_kind *kinds, uint32_t count, const s
 	return false;
 }
 
+uint32_t record_bytes_needed(const struct record_head *head, uint32_t layers)
+{
+	const struct profile_codec *codec = profile_codec_find(head->profile);
+	uint32_t bytes = head->head_bytes;
+	for (uint32_t i = 0; codec && i < head->section_count && head->sections[i].layer < layers; i++)
+		if (kind_among(codec->kinds, codec->kind_count, &head->sections[i]))
+			bytes += head->sections[i].bytes;
+	return bytes;
+}
+
 static bp_status section_fetch(const struct record_section *entry, record_fetch_fn *fetch, void *user, uint8_t **out,
                                bp_error *error)
 {
@@ -121,8 +131,7 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 	status = sections_fetch(head, codec, layers, fetch, user, sections, held, &count, error);
 	if (!status) {
 		status = codec->decode(head, sections, count, model, &failed, error);
-		if (status && failed < count && error && error->offset != BP_NO_OFFSET)
-			error->offset += sections[failed].entry->offset;
+		status = error_shift(status, failed < count ? sections[failed].entry->offset : 0, error);
 	}
 	while (count > 0)
 		free(held[--count]);

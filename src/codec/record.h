@@ -132,6 +132,9 @@ uint32_t record_layers_for(const struct record_head *head, double max_log_rmse);
 /* Checks the head and every section's checksum of a record that is in memory, `count` bytes. */
 bp_status record_verify(const uint8_t *record, size_t count, struct record_head *head, bp_error *error);
 
+/* The head, and what record_decode of these layers (1 or more) fetches: not what is optional and of no kind that this program knows. */
+uint32_t record_bytes_needed(const struct record_head *head, uint32_t layers);
+
 /* Fetches and checks the sections of layers 0..layers-1 (0: all) and builds the model; the caller frees it with model_free. */
 bp_status record_decode(const struct record_head *head, uint32_t layers, record_fetch_fn *fetch, void *user, struct model **out,
                         bp_error *error);

@@ -8,7 +8,7 @@
 #include "error.h"
 
 struct demo_material {
-	const char *name, *kind;
+	const char *name;
 	double diffuse[3];
 	double specular[3], roughness, share, specular2[3], roughness2;
 	double sheen[3], retro[3], retro_width;
@@ -31,8 +31,6 @@ static const double COSINE_MIN = 0.05;
 size_t demo_count(void) { return sizeof MATERIALS / sizeof *MATERIALS; }
 
 const char *demo_name(size_t index) { return MATERIALS[index].name; }
-
-const char *demo_kind(size_t index) { return MATERIALS[index].kind; }
 
 static double fifth_power(double x) { return x * x * x * x * x; }
 

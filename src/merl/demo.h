@@ -32,7 +32,6 @@ size_t demo_count(void);
 
 /* index < demo_count(); in the table's order. Static text. */
 const char *demo_name(size_t index);
-const char *demo_kind(size_t index);
 
 /*
  * Fills a new lattice of any legal dims; clean: without faults, but with the horizon. Negative

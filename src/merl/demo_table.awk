@@ -23,12 +23,14 @@ NR == 1 {
 	}
 	printf "{"
 	for (n = 1; n <= count; n++) {
+		if (column[n] == "kind") # for people
+			continue
 		value = $n
 		if (n > 2 && value !~ /^[0-9][0-9.,]*$/) {
 			print FILENAME ":" NR ": " column[n] ": not a number: " value > "/dev/stderr"
 			exit 1
 		}
-		if (n <= 2)
+		if (n == 1)
 			value = "\"" value "\""
 		else if (index(colour, " " column[n] " "))
 			value = "{" value "}"

@@ -105,38 +105,41 @@ double lattice_horizon_limit(const struct lattice *lattice)
 	return (double)nextafterf((float)(lowest > LATTICE_DEEPEST_HORIZON ? lowest : LATTICE_DEEPEST_HORIZON), -1);
 }
 
-bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
-{
-	struct cosines highest, centre;
-	bp_status status = lattice_dims_check(dims, error);
-	if (status != BP_OK)
-		return status;
-	highest_fill(dims, &highest);
-	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
-	for (uint32_t i = 0; i < dims.theta_h; i++)
-		for (uint32_t j = 0; j < dims.theta_d; j++, below += dims.phi_d) {
-			const double high_a = highest.cos_d[j] * highest.cos_h[i], high_q = highest.sin_d[j] * highest.sin_h[i];
-			const double a = centre.cos_d[j] * centre.cos_h[i], q = centre.sin_d[j] * centre.sin_h[i];
-			for (uint32_t k = 0; k < dims.phi_d; k++)
-				below[k] = (high_a - high_q * highest.cos_p[k] <= 0) & (a - q * centre.cos_p[k] < limit);
-		}
-	return BP_OK;
-}
-
-bp_status lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
+/* 1 where the smaller cosine at the cell's centre is below the limit; highest: and all of the cell below the horizon. NULL: wherever it is. */
+static void below_fill(struct lattice_dims dims, double limit, const struct cosines *highest, uint8_t *below)
 {
 	struct cosines centre;
-	bp_status status = lattice_dims_check(dims, error);
-	if (status != BP_OK)
-		return status;
 	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
 	for (uint32_t i = 0; i < dims.theta_h; i++)
 		for (uint32_t j = 0; j < dims.theta_d; j++, below += dims.phi_d) {
 			const double a = centre.cos_d[j] * centre.cos_h[i], q = centre.sin_d[j] * centre.sin_h[i];
 			for (uint32_t k = 0; k < dims.phi_d; k++)
 				below[k] = a - q * centre.cos_p[k] < limit;
+			if (!highest)
+				continue;
+			const double high_a = highest->cos_d[j] * highest->cos_h[i], high_q = highest->sin_d[j] * highest->sin_h[i];
+			for (uint32_t k = 0; k < dims.phi_d; k++)
+				below[k] &= high_a - high_q * highest->cos_p[k] <= 0;
 		}
+}
+
+bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
+{
+	struct cosines highest;
+	const bp_status status = lattice_dims_check(dims, error);
+	if (status != BP_OK)
+		return status;
+	highest_fill(dims, &highest);
+	below_fill(dims, limit, &highest, below);
 	return BP_OK;
+}
+
+bp_status lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
+{
+	const bp_status status = lattice_dims_check(dims, error);
+	if (status == BP_OK)
+		below_fill(dims, limit, NULL, below);
+	return status;
 }
 
 bp_status lattice_seen(struct lattice_dims dims, uint8_t *seen, bp_error *error)

@@ -40,22 +40,32 @@ static bp_status too_large(bp_error *error)
 	                 RGL_FILE_BYTES_MAX);
 }
 
+/*
+ * How far to read on: a byte past the end that is known, to see that it is one; twice as far where none is, or where the file has grown
+ * past it, or has bytes although it was said to be empty.
+ */
+static size_t goal_of(const struct image *image, uint64_t available, size_t most)
+{
+	if (available >= image->count && available < most)
+		return (size_t)available + 1;
+	const size_t twice = image->count < FIRST_BYTES / 2 ? FIRST_BYTES : 2 * image->count;
+	return twice < most ? twice : most;
+}
+
 /* All of the file, refused early where its table says enough. */
 static bp_status image_read(struct image *image, struct input *in, struct tensor_table *table, bp_error *error)
 {
-	const size_t first = in->available < FIRST_BYTES ? (size_t)in->available + 1 : FIRST_BYTES;
-	bp_status status = image_fill(image, in, first, error);
+	const size_t most = RGL_FILE_BYTES_MAX + 1;
+	bp_status status = image_fill(image, in, goal_of(image, in->available, FIRST_BYTES), error);
+	const uint64_t size = image->ended ? image->count : in->available < image->count ? UINT64_MAX : in->available;
 	if (!status)
-		status = tensor_table_parse(image->bytes, image->count, image->ended ? image->count : in->available, table, error);
+		status = tensor_table_parse(image->bytes, image->count, size, table, error);
 	if (!status)
 		status = rgl_table_check(table, error);
 	if (!status && in->available != UINT64_MAX && in->available > RGL_FILE_BYTES_MAX)
 		status = too_large(error);
-	while (!status && !image->ended) {
-		const size_t twice = 2 * image->count, most = RGL_FILE_BYTES_MAX + 1;
-		const size_t wanted = in->available < most ? (size_t)in->available + 1 : twice < most ? twice : most;
-		status = image->count == most ? too_large(error) : image_fill(image, in, wanted, error);
-	}
+	while (!status && !image->ended)
+		status = image->count == most ? too_large(error) : image_fill(image, in, goal_of(image, in->available, most), error);
 	return status ? status : tensor_table_parse(image->bytes, image->count, image->count, table, error);
 }
 

@@ -327,8 +327,7 @@ static void input_check(struct source_list *list, const char *path, const struct
 	    list->unwanted_count > before->unwanted_count || list->refused_count > before->refused_count ||
 	    list->damaged_count > before->damaged_count || list->skipped_count > before->skipped_count)
 		return;
-	snprintf(reason, sizeof reason, "no material in it; other files passed over: %zu (measured ones end in .binary or .bsdf)",
-	         list->ignored_count - before->ignored_count);
+	snprintf(reason, sizeof reason, SOURCE_EMPTY, list->ignored_count - before->ignored_count);
 	notice(list, SOURCE_DAMAGED, path, reason);
 }
 

@@ -89,6 +89,9 @@ bp_status source_item_fill(struct source_item *item, const char *name, const cha
                            bp_error *error);
 void source_item_clear(struct source_item *item);
 
+/* What is told of an input without any material: what was passed over in it. */
+#define SOURCE_EMPTY "no material in it; other files passed over: %zu (measured ones end in .binary or .bsdf)"
+
 /* Notes the texts of licences that were met in a container so far. */
 void source_licences_take(struct source_list *list, const char *path, const struct container *container);
 

@@ -93,11 +93,10 @@ bp_status source_stream_next(struct source_list *list, const char *path, struct 
 			const char *remark = container_remark(stream);
 			const bool tell = list->told != stream && (remark || (container_members(stream) == 0 && stream_is_named(list, path)));
 			list->told = tell ? stream : NULL;
-			return !tell    ? BP_OK
-			       : remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", remark)
-			                : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-			                            "no material in it; other files passed over: %zu (measured ones end in .binary or .bsdf)",
-			                            container_ignored(stream));
+			if (!tell)
+				return BP_OK;
+			return remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", remark)
+			              : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, SOURCE_EMPTY, container_ignored(stream));
 		}
 		const bp_status fault = source_name_make(path, member.path, member.fault, name, error);
 		if (source_is_wanted(list, name))

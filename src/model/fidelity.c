@@ -42,8 +42,7 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
 	if (count > LAYERS_MAX)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: %u tables; %d at most", count, LAYERS_MAX);
 	for (uint32_t t = 0; t < count; t++)
-		if (dims.theta_h != tables[t].dims.theta_h || dims.theta_d != tables[t].dims.theta_d ||
-		    dims.phi_d != tables[t].dims.phi_d)
+		if (!lattice_dims_equal(dims, tables[t].dims))
 			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: the two tables have different extents");
 	if (!truth->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "fidelity: no valid cell to compare");

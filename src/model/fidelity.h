@@ -7,7 +7,7 @@
 #include "fit.h"
 #include "merl/lattice.h"
 
-/* Fidelity of a decoded table against the measured one, over valid cells and the three channels; see fidelity.h. */
+/* Fidelity of a decoded table against the measured one, over valid cells and the three channels. */
 struct fidelity {
 	double log_rmse;         /* rms of log10((e + 1e-3)/(b + 1e-3)) */
 	double seen_log_rmse;    /* the same over the cells that can be seen (lattice_seen) only; log_rmse where there are none */

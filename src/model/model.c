@@ -13,10 +13,9 @@ bp_status model_fit(const struct lattice *lattice, const struct fit_options *opt
 	struct model *model;
 	bp_status status;
 
-	if (!lattice_dims_legal(lattice->dims))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "a lattice of %u x %u x %u cells: 4 to %d each, at most %d in all", lattice->dims.theta_h,
-		                 lattice->dims.theta_d, lattice->dims.phi_d, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
+	status = lattice_dims_check(lattice->dims, error);
+	if (status)
+		return status;
 	if (!lattice->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: every value is negative, NaN or infinite");
 	model = calloc(1, sizeof *model);
@@ -69,7 +68,7 @@ bp_status model_expand(const struct model *model, uint32_t layers, struct expans
 	case PROFILE_PAPER:
 		/* A model of which all layers are wanted shows what it holds, whichever layers that came in. */
 		return paper_expand(model->paper, model->colour, layers < model->layer_count ? layers : PAPER_LAYERS, out, error);
-	case PROFILE_SPECTRAL: return spectral_expand(model->spectral, layers, out, error);
+	case PROFILE_SPECTRAL: return spectral_expand(model->spectral, layers, false, out, error);
 	default: return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "profile %d is not known", (int)model->profile);
 	}
 }

@@ -20,7 +20,7 @@ static void half_take(const struct expansion *whole, struct expansion *out)
 	out->unit = whole->unit;
 }
 
-bp_status model_expand_half(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
+bp_status model_expand_half(const struct model *model, struct expansion *out, bp_error *error)
 {
 	struct lattice_dims half;
 	struct expansion whole = {0};
@@ -32,11 +32,9 @@ bp_status model_expand_half(const struct model *model, uint32_t layers, struct e
 	bp_status status = out->block ? BP_OK : expansion_alloc(half, out, error);
 	if (status)
 		return status;
-	if (!layers || layers > model->layer_count)
-		layers = model->layer_count;
-	if (model->profile == PROFILE_SPECTRAL && model->spectral && !model->spectral->coefficient[0])
-		return spectral_expand_half(model->spectral, layers, out, error);
-	status = model_expand(model, layers, &whole, error);
+	if (model->profile == PROFILE_SPECTRAL)
+		return spectral_expand(model->spectral, model->layer_count, true, out, error);
+	status = model_expand(model, 0, &whole, error);
 	if (!status)
 		half_take(&whole, out);
 	expansion_free(&whole);

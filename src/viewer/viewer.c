@@ -75,15 +75,12 @@ static size_t name_quote(char *out, const char *name)
 const char *viewer_archive_info(const struct bp_archive *archive, double index)
 {
 	static char text[2 * BP_NAME_BYTES_MAX + 128 + 64 * LAYERS_MAX];
+	struct index_entry entry;
 	struct record_head head;
-	if (archive_record_head(archive, (uint64_t)index, &head, &last) != BP_OK)
+	if (archive_record_head(archive, (uint64_t)index, &entry, &head, &last) != BP_OK)
 		return NULL;
 	size_t used = (size_t)snprintf(text, sizeof text, "{\"name\":\"");
 	used += name_quote(text + used, head.name);
-	struct index_page leaf = {.count = 0};
-	struct index_entry entry;
-	if (archive_entry(archive, (uint64_t)index, &leaf, &entry, &last) != BP_OK)
-		return NULL;
 	used += (size_t)snprintf(text + used, sizeof text - used, "\",\"offset\":%llu,\"bytes\":%u,\"layers\":[",
 	                         (unsigned long long)entry.offset, head.record_bytes);
 	for (uint32_t l = 0; l < head.layer_count; l++)

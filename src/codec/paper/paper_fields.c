@@ -97,13 +97,6 @@ bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum pap
 /* Octaves that slices lose before the pairs begin to. */
 enum { PAIRS_LATER = 2 * 256 };
 
-void fields_free(struct sparse_field *fields, uint32_t count)
-{
-	for (uint32_t i = 0; fields && i < count; i++)
-		sparse_field_free(&fields[i]);
-	free(fields);
-}
-
 static bp_status field_coarsen(const struct sparse_field *from, double factor, uint32_t shift, struct sparse_field *to,
                                bp_error *error)
 {

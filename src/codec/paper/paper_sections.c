@@ -61,7 +61,7 @@ static struct byte_buffer *part_add(struct section_list *sections, int part, int
 	                   PARTS[part].version, PARTS[part].layer, SECTION_REQUIRED | (uint32_t)SECTION_ONLY_R << c, NAN);
 }
 
-/* All sections of the model, coarser by `shift` (sparse_coarsen); sections come in the order of their layers. */
+/* All sections of the model, coarser by `shift` (fields_coarsen); sections come in the order of their layers. */
 static bp_status model_write(const struct paper_model *paper, uint32_t shift, struct section_list *sections,
                              uint32_t *layer_count, uint32_t *left_out, bp_error *error)
 {
@@ -86,7 +86,7 @@ static bp_status model_write(const struct paper_model *paper, uint32_t shift, st
 				*layer_count = PARTS[part].layer + 1u;
 				*left_out &= ~PARTS[part].left_out;
 			}
-			fields_free(coarse, count);
+			sparse_fields_free(coarse, count);
 		}
 	return status;
 }

@@ -9,7 +9,6 @@
 enum { LEVELS_MAX = 24, SWEEPS = 4 };
 
 struct fill {
-	bool wrap_rows, wrap_columns;
 	unsigned levels; /* level 0 is the caller's plane */
 	struct fill_level level[LEVELS_MAX];
 	float *values; /* of levels 1.., one after the other */
@@ -17,15 +16,13 @@ struct fill {
 	float *row; /* two rows of scratch, a cell longer on both sides */
 };
 
-bp_status fill_create(uint32_t rows, uint32_t columns, bool wrap_rows, bool wrap_columns, struct fill **out, bp_error *error)
+bp_status fill_create(uint32_t rows, uint32_t columns, struct fill **out, bp_error *error)
 {
 	struct fill *fill = calloc(1, sizeof *fill);
 	size_t cells = 0;
 
 	if (!fill)
 		return error_memory(error, sizeof *fill);
-	fill->wrap_rows = wrap_rows;
-	fill->wrap_columns = wrap_columns;
 	for (uint32_t r = rows, c = columns;; r = (r + 1) / 2, c = (c + 1) / 2) {
 		fill->level[fill->levels].rows = r;
 		fill->level[fill->levels].columns = c;
@@ -84,7 +81,7 @@ void fill_plane(struct fill *fill, float *plane, const uint8_t *valid, float whe
 		top++;
 	/* And down again; the level above is complete. */
 	for (unsigned l = top + 1; l-- > 0;) {
-		kernels->fill_interpolate(&fill->level[l + 1], &fill->level[l], fill->wrap_rows, fill->wrap_columns, fill->row);
-		kernels->fill_smooth(&fill->level[l], fill->wrap_rows, fill->wrap_columns, SWEEPS, fill->row);
+		kernels->fill_interpolate(&fill->level[l + 1], &fill->level[l], fill->row);
+		kernels->fill_smooth(&fill->level[l], SWEEPS, fill->row);
 	}
 }

@@ -17,9 +17,8 @@ struct fill_level {
 struct fill_kernels {
 	/* The steps of fill.h; scratch holds two rows and four cells. */
 	size_t (*fill_halve)(const struct fill_level *fine, const struct fill_level *coarse);
-	void (*fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows, int wrap_columns,
-	                         float *scratch);
-	void (*fill_smooth)(const struct fill_level *level, int wrap_rows, int wrap_columns, unsigned sweeps, float *scratch);
+	void (*fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, float *scratch);
+	void (*fill_smooth)(const struct fill_level *level, unsigned sweeps, float *scratch);
 };
 
 extern const struct fill_kernels fill_kernels_plain, fill_kernels_avx2;

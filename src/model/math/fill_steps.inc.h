@@ -34,37 +34,43 @@ static size_t KERNEL(fill_halve)(const struct fill_level *fine, const struct fil
 	return missing;
 }
 
-/*
- * A row's neighbour on either side, `size` cells long: before the first and after the last. On an axis that
- * does not wrap the border is its own neighbour.
- */
-static inline size_t KERNEL(before)(size_t i, size_t size, int wrap) { return i ? i - 1 : wrap ? size - 1 : 0; }
-static inline size_t KERNEL(after)(size_t i, size_t size, int wrap) { return i + 1 < size ? i + 1 : wrap ? 0 : i; }
+/* A row's neighbour on either side, `size` rows in all. The border is its own. */
+static inline size_t KERNEL(before)(size_t i) { return i ? i - 1 : 0; }
+static inline size_t KERNEL(after)(size_t i, size_t size) { return i + 1 < size ? i + 1 : i; }
+
+/* A row with one more cell on both sides. */
+static inline void KERNEL(border)(float *row, size_t n)
+{
+	row[-1] = row[0];
+	row[n] = row[n - 1];
+}
+
+static inline unsigned KERNEL(row_complete)(const uint8_t *valid, size_t n)
+{
+	unsigned all = 1;
+	for (size_t c = 0; c < n; c++)
+		all &= valid[c] != 0;
+	return all;
+}
 
 /* Invalid fine cells from the coarse level: 3/4 of the parent and 1/4 of its nearer neighbour, along both axes. */
-static void KERNEL(fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, int wrap_rows,
-                                     int wrap_columns, float *scratch)
+static void KERNEL(fill_interpolate)(const struct fill_level *coarse, const struct fill_level *fine, float *scratch)
 {
 	const size_t n = coarse->columns, columns = fine->columns;
 	float *blend = scratch + 1; /* a coarse row with one more cell on both sides */
 
 	for (size_t r = 0; r < fine->rows; r++) {
 		const size_t parent = r / 2;
-		const size_t other =
-			r % 2 ? KERNEL(after)(parent, coarse->rows, wrap_rows) : KERNEL(before)(parent, coarse->rows, wrap_rows);
+		const size_t other = r % 2 ? KERNEL(after)(parent, coarse->rows) : KERNEL(before)(parent);
 		const float *a = coarse->value + parent * n, *b = coarse->value + other * n;
 		float *value = fine->value + r * columns;
 		const uint8_t *valid = fine->valid + r * columns;
-		unsigned all = 1;
 
-		for (size_t c = 0; c < columns; c++)
-			all &= valid[c] != 0;
-		if (all)
+		if (KERNEL(row_complete)(valid, columns))
 			continue;
 		for (size_t c = 0; c < n; c++)
 			blend[c] = 0.75f * a[c] + 0.25f * b[c];
-		blend[-1] = blend[wrap_columns ? n - 1 : 0];
-		blend[n] = blend[wrap_columns ? 0 : n - 1];
+		KERNEL(border)(blend, n);
 		for (size_t c = 0; c < columns / 2; c++) {
 			float left = 0.75f * blend[c] + 0.25f * blend[(ptrdiff_t)c - 1], right = 0.75f * blend[c] + 0.25f * blend[c + 1];
 			value[2 * c] = valid[2 * c] ? value[2 * c] : left;
@@ -76,7 +82,7 @@ static void KERNEL(fill_interpolate)(const struct fill_level *coarse, const stru
 }
 
 /* Sweeps down and up the rows: an invalid cell becomes the mean of its neighbours, of which the row just passed is new already. */
-static void KERNEL(fill_smooth)(const struct fill_level *level, int wrap_rows, int wrap_columns, unsigned sweeps, float *scratch)
+static void KERNEL(fill_smooth)(const struct fill_level *level, unsigned sweeps, float *scratch)
 {
 	const size_t rows = level->rows, columns = level->columns;
 	float *copy = scratch + 1;
@@ -84,20 +90,16 @@ static void KERNEL(fill_smooth)(const struct fill_level *level, int wrap_rows, i
 	for (unsigned s = 0; s < sweeps; s++)
 		for (size_t q = 0; q < rows; q++) {
 			const size_t r = s % 2 ? rows - 1 - q : q;
-			const float *up = level->value + KERNEL(before)(r, rows, wrap_rows) * columns;
-			const float *down = level->value + KERNEL(after)(r, rows, wrap_rows) * columns;
+			const float *up = level->value + KERNEL(before)(r) * columns;
+			const float *down = level->value + KERNEL(after)(r, rows) * columns;
 			float *value = level->value + r * columns;
 			const uint8_t *valid = level->valid + r * columns;
-			unsigned all = 1;
 
-			for (size_t c = 0; c < columns; c++)
-				all &= valid[c] != 0;
-			if (all)
+			if (KERNEL(row_complete)(valid, columns))
 				continue;
 			for (size_t c = 0; c < columns; c++)
 				copy[c] = value[c];
-			copy[-1] = copy[wrap_columns ? columns - 1 : 0];
-			copy[columns] = copy[wrap_columns ? 0 : columns - 1];
+			KERNEL(border)(copy, columns);
 			for (size_t c = 0; c < columns; c++) {
 				float mean = 0.25f * ((copy[(ptrdiff_t)c - 1] + copy[c + 1]) + (up[c] + down[c]));
 				value[c] = valid[c] ? copy[c] : mean;

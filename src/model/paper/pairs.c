@@ -216,7 +216,7 @@ static bp_status pair_code(struct turns *t, struct sparse_fit *fit, enum paper_f
 	if (sparse_fit_is_one(fit, t->wanted, weight)) {
 		for (size_t i = 0; i < fit->cells; i++)
 			value[i] = 1;
-		*out = (struct sparse_field){.rows = fit->plane.rows.field, .columns = fit->plane.field_columns};
+		*out = (struct sparse_field){.count = 0};
 		return BP_OK;
 	}
 	const float least = sparse_fit_energies(fit, weight, t->energy);

@@ -27,6 +27,13 @@ void sparse_field_free(struct sparse_field *field)
 	field->count = 0;
 }
 
+void sparse_fields_free(struct sparse_field *fields, uint32_t count)
+{
+	for (uint32_t i = 0; fields && i < count; i++)
+		sparse_field_free(&fields[i]);
+	free(fields);
+}
+
 void paper_free(struct paper_model *paper)
 {
 	if (!paper)
@@ -37,9 +44,7 @@ void paper_free(struct paper_model *paper)
 			free(channel->marginal[axis]);
 		sparse_field_free(&channel->hd);
 		sparse_field_free(&channel->hphi);
-		for (uint32_t i = 0; channel->slice && i < channel->slice_count; i++)
-			sparse_field_free(&channel->slice[i]);
-		free(channel->slice);
+		sparse_fields_free(channel->slice, channel->slice_count);
 	}
 	free(paper);
 }

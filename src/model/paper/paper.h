@@ -24,11 +24,10 @@ enum { PAPER_KEEP_PAIR = 16, PAPER_KEEP_SLICE = 64, PAPER_LEVEL_MAX = (1 << 20) 
 
 /* Wavelet coefficients of one 2-D field, quantised: coefficient[index] = level paper_step(step). */
 struct sparse_field {
-	uint32_t rows, columns; /* of the field; the transform's plane is larger, see wavelet.h */
-	uint32_t count;         /* coefficients kept; 0: the field is 1 everywhere (the pair is left out) */
-	uint32_t *index;        /* strictly ascending, column-major in the transform's plane, below paper_plane_cells */
-	int32_t *level;         /* never 0, at most PAPER_LEVEL_MAX */
-	uint16_t step;          /* the code of paper_step; anything where count is 0 */
+	uint32_t count;  /* coefficients kept; 0: the field is 1 everywhere (the pair is left out) */
+	uint32_t *index; /* strictly ascending, column-major in the transform's plane, below paper_plane_cells */
+	int32_t *level;  /* never 0, at most PAPER_LEVEL_MAX */
+	uint16_t step;   /* the code of paper_step; anything where count is 0 */
 };
 
 enum paper_field { PAPER_HD, PAPER_HPHI, PAPER_SLICE };
@@ -75,6 +74,7 @@ bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, st
                     struct colour_fit colour[3], bp_error *error);
 void paper_free(struct paper_model *paper); /* NULL is allowed */
 void sparse_field_free(struct sparse_field *field);
+void sparse_fields_free(struct sparse_field *fields, uint32_t count); /* the array too; NULL is allowed */
 
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h of a channel over the whole lattice: the model in units of its scale; >= 0 and finite. */
 bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table,

@@ -206,7 +206,7 @@ bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const
 	double logs = 0, largest = 0;
 	size_t count = 0;
 
-	*out = (struct sparse_field){.rows = fit->plane.rows.field, .columns = fit->plane.field_columns};
+	*out = (struct sparse_field){.count = 0};
 	if (sparse_fit_is_one(fit, wanted, weight))
 		return BP_OK;
 	for (size_t i = 0; i < n; i++)

@@ -19,6 +19,7 @@ enum { ANCHOR_WORTH = 1 << 15 };
 static void design_free(struct design *design)
 {
 	free(design->x);
+	free(design->y);
 	free(design->excess);
 	free(design->inside);
 	free(design->picked);
@@ -30,12 +31,13 @@ static bp_status design_alloc(size_t n, struct design *design, bp_error *error)
 {
 	*design = (struct design){.n = n};
 	design->x = malloc(n * sizeof *design->x);
+	design->y = malloc(n * sizeof *design->y);
 	design->excess = malloc(n * sizeof *design->excess);
 	design->inside = malloc((n + 1) * sizeof *design->inside);
 	design->picked = malloc((2 * robust_picks(n) + 1) * sizeof *design->picked);
 	design->picked_excess = malloc((robust_picks(n) + 1) * sizeof *design->picked_excess);
-	if (!design->x || !design->excess || !design->inside || !design->picked || !design->picked_excess)
-		return error_memory(error, n * 3 * sizeof(double));
+	if (!design->x || !design->y || !design->excess || !design->inside || !design->picked || !design->picked_excess)
+		return error_memory(error, n * 4 * sizeof(double));
 	/* Few observations are read through as quickly as an anchor is placed. */
 	return n < ANCHOR_WORTH ? BP_OK : robust_anchor_alloc(n / 6, &design->anchor, error);
 }
@@ -93,45 +95,60 @@ static void design_prepare(struct design *design)
 	}
 }
 
-/* Undoes the scaling by powers of two. */
-static void fit_unscale(struct robust_fit *fit, int x_exponent, int y_exponent)
+/*
+ * Where most of a channel is dark, its line sinks towards 0 for as long as there are numbers to sink to; where that ends would
+ * hang on the unit of measure. Terms beyond the range of single precision are 0: the largest x and y are about 1 here.
+ */
+static void fit_still(struct robust_fit *fit)
 {
-	struct power p = power_of(y_exponent), q = power_of(y_exponent - x_exponent);
-	fit->intercept = fit->intercept * p.a * p.b;
-	fit->slope = fit->slope * q.a * q.b;
+	if (fabs(fit->intercept) < FLT_MIN)
+		fit->intercept = 0;
+	if (fabs(fit->slope) < FLT_MIN)
+		fit->slope = 0;
+}
+
+/*
+ * The regression of design->y on unit * design->x, n of each: both are scaled by powers of two to about 1, and the line back. The unit
+ * enters by its exponent and mantissa, so that it may be of any size. `still`: fit_still.
+ */
+static void design_fit(struct design *design, double unit, uint32_t limit, bool still, struct robust_fit *out)
+{
+	const size_t n = design->n;
+	const int float_exponent = exponent_of(largest_size(design->x, n)), y_exponent = exponent_of(largest_size(design->y, n));
+	const struct power p = power_of(-float_exponent), q = power_of(-y_exponent);
+	int unit_exponent;
+	const double mantissa = frexp(unit, &unit_exponent);
+
+	design->x_exponent = float_exponent + unit_exponent;
+	for (size_t k = 0; k < n; k++) {
+		design->x[k] = design->x[k] * p.a * p.b * mantissa;
+		design->y[k] = design->y[k] * q.a * q.b;
+	}
+	if (n == 1) {
+		*out = (struct robust_fit){.intercept = design->y[0], .converged = true};
+	} else {
+		design_prepare(design);
+		robust_iterate(design, limit, out);
+	}
+	if (still)
+		fit_still(out);
+	const struct power back = power_of(y_exponent), slope = power_of(y_exponent - design->x_exponent);
+	out->intercept = out->intercept * back.a * back.b;
+	out->slope = out->slope * slope.a * slope.b;
 }
 
 bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error)
 {
 	struct design design;
-	double *scaled = NULL;
 
 	if (!n)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "robust regression: no observation");
-	if (n == 1) {
-		*out = (struct robust_fit){.intercept = y[0], .converged = true};
-		return BP_OK;
-	}
 	bp_status status = design_alloc(n, &design, error);
-	if (status)
-		goto out;
-	scaled = malloc(n * sizeof *scaled);
-	if (!scaled) {
-		status = error_memory(error, n * sizeof *scaled);
-		goto out;
+	if (!status) {
+		memcpy(design.x, x, n * sizeof *x);
+		memcpy(design.y, y, n * sizeof *y);
+		design_fit(&design, 1, ROBUST_ITERATIONS_MAX, false, out);
 	}
-	design.x_exponent = exponent_of(largest_size(x, n));
-	const int y_exponent = exponent_of(largest_size(y, n));
-	const struct power p = power_of(-design.x_exponent), q = power_of(-y_exponent);
-	for (size_t i = 0; i < n; i++) {
-		design.x[i] = x[i] * p.a * p.b;
-		scaled[i] = y[i] * q.a * q.b;
-	}
-	design_prepare(&design);
-	robust_iterate(&design, scaled, ROBUST_ITERATIONS_MAX, out);
-	fit_unscale(out, design.x_exponent, y_exponent);
-out:
-	free(scaled);
 	design_free(&design);
 	return status;
 }
@@ -150,67 +167,35 @@ static bool run_next(const struct lattice *lattice, size_t *start, size_t *end)
 	return true;
 }
 
-/*
- * Where most of a channel is dark, its line sinks towards 0 for as long as there are numbers to sink to; where that ends would
- * hang on the unit of measure. Terms beyond the range of single precision are 0: the largest x and y are about 1 here.
- */
-static void fit_still(struct robust_fit *fit)
+struct colour_fit robust_colour(const struct robust_fit *fit, size_t n)
 {
-	if (fabs(fit->intercept) < FLT_MIN)
-		fit->intercept = 0;
-	if (fabs(fit->slope) < FLT_MIN)
-		fit->slope = 0;
+	return (struct colour_fit){.diffuse = fit->intercept,
+	                           .specular = fit->slope,
+	                           .iterations = fit->iterations,
+	                           .converged = fit->converged,
+	                           .rejected = (double)fit->rejected / (double)n};
 }
 
 bp_status robust_fit_channel(const struct lattice *lattice, int channel, const float *model, double unit, struct colour_fit *out,
                              bp_error *error)
 {
 	const size_t n = lattice->valid_count;
-	struct robust_fit fit = {0};
+	struct robust_fit fit;
 	struct design design;
-	double *y = NULL;
 	size_t k = 0;
 
 	if (!n)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell");
 	bp_status status = design_alloc(n, &design, error);
-	if (status)
-		goto out;
-	y = malloc(n * sizeof *y);
-	if (!y) {
-		status = error_memory(error, n * sizeof *y);
-		goto out;
+	if (!status) {
+		for (size_t i = 0, end = 0; run_next(lattice, &i, &end); k += end - i) {
+			memcpy(design.y + k, lattice->rgb[channel] + i, (end - i) * sizeof *design.y);
+			for (size_t m = i; m < end; m++)
+				design.x[k + m - i] = (double)model[m];
+		}
+		design_fit(&design, unit, ROBUST_CHANNEL_ITERATIONS_MAX, true, &fit);
+		*out = robust_colour(&fit, n);
 	}
-	for (size_t i = 0, end = 0; run_next(lattice, &i, &end); k += end - i) {
-		memcpy(y + k, lattice->rgb[channel] + i, (end - i) * sizeof *y);
-		for (size_t m = i; m < end; m++)
-			design.x[k + m - i] = (double)model[m];
-	}
-	const int float_exponent = exponent_of(largest_size(design.x, n)), y_exponent = exponent_of(largest_size(y, n));
-	const struct power p = power_of(-float_exponent), q = power_of(-y_exponent);
-	/* The unit enters by its exponent and mantissa, so that it may be of any size. */
-	int unit_exponent;
-	const double mantissa = frexp(unit, &unit_exponent);
-	design.x_exponent = float_exponent + unit_exponent;
-	for (k = 0; k < n; k++) {
-		design.x[k] = design.x[k] * p.a * p.b * mantissa;
-		y[k] = y[k] * q.a * q.b;
-	}
-	if (n == 1) {
-		fit = (struct robust_fit){.intercept = y[0], .converged = true};
-	} else {
-		design_prepare(&design);
-		robust_iterate(&design, y, ROBUST_CHANNEL_ITERATIONS_MAX, &fit);
-	}
-	fit_still(&fit);
-	fit_unscale(&fit, design.x_exponent, y_exponent);
-	*out = (struct colour_fit){.diffuse = fit.intercept,
-	                           .specular = fit.slope,
-	                           .iterations = fit.iterations,
-	                           .converged = fit.converged,
-	                           .rejected = (double)fit.rejected / (double)n};
-out:
-	free(y);
 	design_free(&design);
 	return status;
 }

@@ -62,6 +62,9 @@ struct colour_fit {
 	double rejected;    /* share of valid cells with weight 0 */
 };
 
+/* The same figures as those of a channel; n: observations. */
+struct colour_fit robust_colour(const struct robust_fit *fit, size_t n);
+
 /*
  * The regression of a channel's measured values (1/sr) on unit * model over the lattice's valid cells; model[cells]. Terms below 2^-126
  * of the channel's largest value are 0. It goes on until it converges, which takes 10 to 2,000 iterations on measured materials.

@@ -12,14 +12,14 @@
 enum { COLUMNS = 16 }; /* cosine_product works on so many at once */
 
 /* Of one span: cosines of even and of odd harmonics, [k][harmonic] forward, [harmonic][k] inverse, columns padded with zeros. */
-struct table {
+struct matrices {
 	float *matrix[2];
 };
 
 struct span_cosines {
 	uint32_t p;
 	float *work; /* even and odd halves, SPAN_ROWS of them */
-	struct table of[];
+	struct matrices of[];
 };
 
 static uint32_t padded(uint32_t columns) { return (columns + COLUMNS - 1) / COLUMNS * COLUMNS; }
@@ -81,7 +81,7 @@ static float *matrix_make(uint32_t n, uint32_t p, uint32_t parity, uint32_t harm
 bp_status span_cosines_create(struct lattice_dims d, const uint16_t *span, uint32_t harmonics, bool inverse,
                               struct span_cosines **out, bp_error *error)
 {
-	const size_t bytes = sizeof(struct span_cosines) + ((size_t)d.phi_d + 1) * sizeof(struct table);
+	const size_t bytes = sizeof(struct span_cosines) + ((size_t)d.phi_d + 1) * sizeof(struct matrices);
 	struct span_cosines *c = calloc(1, bytes);
 	bool good = c != NULL;
 

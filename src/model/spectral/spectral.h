@@ -27,7 +27,7 @@
 /* Of the unit, in 1/sr: a normal number with a reciprocal, and the hundredth of any value is one. */
 #define SPECTRAL_UNIT_LEAST 0x1p-1022
 #define SPECTRAL_UNIT_MOST 0x1p999
-#define SPECTRAL_CODES_UNIT 0x1p39 /* of spectral_codes of kernels.h: what its 1 is, in units */
+#define SPECTRAL_CODES_UNIT 0x1p39 /* of spectral_codes (spectral_kernels.h): what its 1 is, in units */
 enum { SPECTRAL_PLANES_MAX = 24 }; /* |level| < 2^24 */
 #define SPECTRAL_CENTRE_BELOW 0.4f /* where a level lies whose lower planes are missing, as a share of them */
 
@@ -66,11 +66,13 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
                        struct colour_fit colour[3], bp_error *error);
 /* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
 float spectral_most(double unit);
-bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error);
-/* Every second value along each axis (extents even); *out has half the model's extents. Decoded models only. */
-bp_status spectral_expand_half(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error);
 /*
- * The same, or with `half` the half, as 16-bit floats of table.h's expanded form in units of SPECTRAL_CODES_UNIT times the model's unit:
+ * Layers 0..layers-1 of a decoded model; BP_ERROR_ARGUMENT for one that was fitted. half: every second value along each axis (extents
+ * even); *out has half the model's extents.
+ */
+bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, bool half, struct expansion *out, bp_error *error);
+/*
+ * The same as 16-bit floats of table.h's expanded form in units of SPECTRAL_CODES_UNIT times the model's unit:
  * `channels` of them for every cell, 3 or 1, the channels' mean; rows of phi_d begin `stride` codes apart. No table of floats is made.
  */
 bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out,

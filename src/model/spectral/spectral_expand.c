@@ -51,6 +51,8 @@ bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t la
 static bp_status expand(const struct spectral_model *model, uint32_t layers, bool half, spectral_block_fn *take, void *user,
                         bp_error *error)
 {
+	if (model->coefficient[0])
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a model that was fitted has no levels; its record has");
 	if (model->cut)
 		return spectral_expand_rows(model, layers, half, take, user, error);
 	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, take, user, error);
@@ -72,11 +74,11 @@ static void values_take(void *user, const struct spectral_block *block)
 	                                        (const float(*)[3])m->rotation, spectral_most(m->unit), rgb, p);
 }
 
-bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error)
+bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, bool half, struct expansion *out, bp_error *error)
 {
 	struct values_target target = {model, out};
 	out->unit = model->unit;
-	return expand(model, layers, false, values_take, &target, error);
+	return expand(model, layers, half, values_take, &target, error);
 }
 
 struct codes_target {
@@ -102,11 +104,4 @@ bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t lay
 {
 	struct codes_target target = {model, channels, out, stride};
 	return expand(model, layers, half, codes_take, &target, error);
-}
-
-bp_status spectral_expand_half(const struct spectral_model *model, uint32_t layers, struct expansion *out, bp_error *error)
-{
-	struct values_target target = {model, out};
-	out->unit = model->unit;
-	return expand(model, layers, true, values_take, &target, error);
 }

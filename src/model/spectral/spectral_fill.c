@@ -123,7 +123,7 @@ bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *cons
 	uint8_t *present = malloc(rows);
 	struct runs runs = {0};
 	struct fill *fill = NULL;
-	bp_status status = present ? fill_create(d.theta_d, d.phi_d, false, false, &fill, error) : error_memory(error, rows);
+	bp_status status = present ? fill_create(d.theta_d, d.phi_d, &fill, error) : error_memory(error, rows);
 
 	if (!status)
 		status = runs_make(d, valid, present, &runs, error);

@@ -73,11 +73,7 @@ bp_status spectral_survey_colour(const struct spectral_survey *sample, struct co
 		bp_status status = robust_fit(sample->x, sample->y[c], sample->n, &fit, error);
 		if (status)
 			return status;
-		colour[c] = (struct colour_fit){.diffuse = fit.intercept,
-		                                .specular = fit.slope,
-		                                .iterations = fit.iterations,
-		                                .converged = fit.converged,
-		                                .rejected = (double)fit.rejected / (double)sample->n};
+		colour[c] = robust_colour(&fit, sample->n);
 	}
 	return BP_OK;
 }

@@ -26,12 +26,16 @@ float spectral_level_value(const struct spectral_model *model, int32_t level, ui
 	return level < 0 ? -value : value;
 }
 
-static void terms_of_levels(const struct spectral_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
-                            struct spectral_terms *out)
+bp_status spectral_terms_make(const struct spectral_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
+                              struct spectral_terms *out, bp_error *error)
 {
 	const uint32_t p = inverse->dims.phi_d, cells = (uint32_t)lattice_cells(inverse->dims);
 	uint32_t n = 0, unit = 0, lowest = 0; /* units below this one have their start */
 
+	out->term = malloc(((size_t)model->level_count + 1) * sizeof *out->term);
+	out->start = malloc((3 * (size_t)p + 1) * sizeof *out->start);
+	if (!out->term || !out->start)
+		return error_memory(error, model->level_count * sizeof *out->term);
 	for (uint32_t i = 0; i < model->level_count; i++) {
 		const struct spectral_level level = model->levels[i];
 		const uint32_t field = level.at < cells ? 0 : level.at < 2 * cells ? 1 : 2, at = level.at - field * cells;
@@ -47,38 +51,6 @@ static void terms_of_levels(const struct spectral_model *model, const struct spe
 	}
 	while (unit <= 3 * p)
 		out->start[unit++] = n;
-}
-
-/* A fitted model has hardly a coefficient that is exactly 0: this is correct rather than quick. */
-static void terms_of_coefficients(const struct spectral_model *model, const struct spectrum_inverse *inverse,
-                                  struct spectral_terms *out)
-{
-	const struct lattice_dims d = inverse->dims;
-	uint32_t n = 0;
-
-	for (uint32_t unit = 0; unit < 3 * d.phi_d; unit++) {
-		const float *lane = model->coefficient[unit / d.phi_d] + spectrum_lane(d.phi_d, unit % d.phi_d);
-		out->start[unit] = n;
-		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++)
-			if (lane[(size_t)r * d.phi_d] != 0)
-				out->term[n++] = spectrum_term_make(inverse, r, lane[(size_t)r * d.phi_d]);
-	}
-	out->start[3 * d.phi_d] = n;
-}
-
-bp_status spectral_terms_make(const struct spectral_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
-                              struct spectral_terms *out, bp_error *error)
-{
-	const size_t room = model->coefficient[0] ? 3 * lattice_cells(inverse->dims) : model->level_count;
-
-	out->term = malloc((room ? room : 1) * sizeof *out->term);
-	out->start = malloc((3 * (size_t)inverse->dims.phi_d + 1) * sizeof *out->start);
-	if (!out->term || !out->start)
-		return error_memory(error, room * sizeof *out->term);
-	if (model->coefficient[0])
-		terms_of_coefficients(model, inverse, out);
-	else
-		terms_of_levels(model, inverse, layers, out);
 	return BP_OK;
 }
 

@@ -1,5 +1,5 @@
 /*
- * spectral_terms.h: the coefficients of a model as lists of those that are not 0, ready for the inverse transform.
+ * spectral_terms.h: the coefficients of a decoded model as lists of those that are not 0, ready for the inverse transform.
  */
 #ifndef MODEL_SPECTRAL_SPECTRAL_TERMS_H
 #define MODEL_SPECTRAL_SPECTRAL_TERMS_H
@@ -12,7 +12,7 @@ struct spectral_terms {
 	uint32_t *start; /* start[f P + m]: of field f, harmonic m; 3 P + 1 of them */
 };
 
-/* What the first `layers` layers hold of a decoded model, or all of a fitted one. Free it also after a failure. */
+/* What the first `layers` layers hold. Free it also after a failure. */
 bp_status spectral_terms_make(const struct spectral_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
                               struct spectral_terms *out, bp_error *error);
 void spectral_terms_free(struct spectral_terms *terms);

@@ -1,4 +1,4 @@
-/* compact_row.inc.h: rows of values become blocks of the compact form. See kernels.h, compact.h and compact_row.h. */
+/* compact_row.inc.h: rows of values become blocks of the compact form. See compact.h and compact_row.h. */
 #include "compact_row.h"
 #include "model/math/fast_math.h"
 

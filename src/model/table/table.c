@@ -142,8 +142,8 @@ bp_status table_build(const struct expansion *expansion, enum table_form form, i
 /* ---- from a model ---- */
 
 /* Straight from the fields: no table of floats in between, which would be twice the size. */
-static bp_status codes_build(const struct model *model, uint32_t layers, struct lattice_dims dims, bool half, int channels,
-                             struct table **out, bp_error *error)
+static bp_status codes_build(const struct model *model, struct lattice_dims dims, bool half, int channels, struct table **out,
+                             bp_error *error)
 {
 	struct table *table = NULL;
 	bp_status status = table_new(dims, half, TABLE_EXPANDED, channels, &table, error);
@@ -152,8 +152,8 @@ static bp_status codes_build(const struct model *model, uint32_t layers, struct 
 	table->unit = (float)(model->spectral->unit * SPECTRAL_CODES_UNIT);
 	status = expanded_alloc(table, error);
 	if (!status)
-		status =
-			spectral_expand_codes(model->spectral, layers, half, channels, (uint16_t *)(void *)table->store, table->row, error);
+		status = spectral_expand_codes(model->spectral, model->layer_count, half, channels, (uint16_t *)(void *)table->store,
+		                               table->row, error);
 	if (status) {
 		table_free(table);
 		return status;
@@ -173,10 +173,9 @@ bp_status table_build_model(const struct model *model, bool half, enum table_for
 	if (half && !model_has_half(model->dims, &dims))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the extents %u x %u x %u have no halves", dims.theta_h,
 		                 dims.theta_d, dims.phi_d);
-	if (m && !m->coefficient[0] && form == TABLE_EXPANDED && (channels == 1 || channels == 3) && m->unit >= 0x1p-60 &&
-	    m->unit <= 0x1p60)
-		return codes_build(model, model->layer_count, dims, half, channels, out, error);
-	bp_status status = (half ? model_expand_half : model_expand)(model, 0, &expansion, error);
+	if (m && form == TABLE_EXPANDED && (channels == 1 || channels == 3) && m->unit >= 0x1p-60 && m->unit <= 0x1p60)
+		return codes_build(model, dims, half, channels, out, error);
+	bp_status status = half ? model_expand_half(model, &expansion, error) : model_expand(model, 0, &expansion, error);
 	if (!status)
 		status = expansion_build(&expansion, half, form, channels, out, error);
 	expansion_free(&expansion);

@@ -1,5 +1,5 @@
 /*
- * table.h: the inside of struct table, shared by the builders and the evaluation kernels.
+ * table_parts.h: the inside of struct table, shared by the builders and the evaluation kernels.
  */
 #ifndef MODEL_TABLE_TABLE_PARTS_H
 #define MODEL_TABLE_TABLE_PARTS_H
