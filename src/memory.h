@@ -36,4 +36,7 @@ const bp_allocator *memory_allocator_set(const bp_allocator *allocator);
  */
 void *memory_grown(void *list, size_t count, size_t size);
 
+/* A block of at least `bytes` bytes, whatever stands in it: the same, or a new one of twice as many. NULL: no memory, and the old one is freed. */
+void *memory_roomy(void *block, size_t *room, size_t bytes);
+
 #endif

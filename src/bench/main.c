@@ -24,11 +24,11 @@ static void print_head(FILE *out, const struct run *run, const char *label, int 
 	if (run->truth)
 		fprintf(out, "# figures against: the tables of the same names in %s\n", run->truth);
 	fprintf(out,
-	        "# processes: %d; fit, decode: processor seconds; evaluate: median of %d passes over %d random pairs; cat: "
-	        "wall-clock seconds\n",
+	        "# processes: %d; fit, decode: processor seconds; "
+	        "evaluate: median of %d passes over %d random pairs; cat: wall-clock seconds\n",
 	        workers, REPEATS, PAIRS);
-	fprintf(out, "# evaluated: model = straight from what is stored; table = after decoding the whole, nearest look-up (paper, "
-	             "default: interpolated, as a renderer reads them)\n");
+	fprintf(out, "# evaluated: model = straight from what is stored; "
+	             "table = after decoding the whole, nearest look-up (paper, spectral: interpolated, as a renderer reads them)\n");
 	for (int m = 0; m < METHOD_FITS; m++)
 		if (run->method_on[m])
 			fprintf(out, "# %s: %s%s\n", METHODS[m].name, METHODS[m].baseline->reference,

@@ -123,9 +123,8 @@ bp_status sphere_plan_make(enum lighting lighting, uint32_t size, uint32_t row_f
 	struct sphere_plan *plan = calloc(1, sizeof *plan);
 	struct angle_tables *angles = angle_tables_make();
 	bool ok = plan && angles;
-	if (ok) {
+	if (ok)
 		*plan = (struct sphere_plan){.size = size, .row_first = row_first, .row_count = row_count, .dims = dims};
-	}
 	/* light by light: neighbouring pixels under one light read neighbouring cells */
 	for (int n = 0; ok && n < light_count; n++)
 		for (uint32_t y = row_first; ok && y < row_first + row_count; y++)
@@ -151,8 +150,6 @@ void sphere_plan_free(struct sphere_plan *plan)
 		free(plan);
 	}
 }
-
-size_t sphere_plan_places(const struct sphere_plan *plan) { return plan->place_count; }
 
 void sphere_plan_render(const struct sphere_plan *plan, const struct lookup_table *const *tables, int count,
                         struct sphere_image *const *images)

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "output_file.h"
 #include "shown.h"
 
 /* The plan of every pixel and light is kept: 0.7 GB at 512 pixels. */
@@ -123,7 +124,7 @@ static bp_status images_write(const struct compare *compare, const struct compar
 		char *path = image_path(compare, item->entry.name, l);
 		if (!path)
 			return error_memory(error, 512);
-		status = file_write_whole(path, png, bytes, error);
+		status = output_file_write_whole(path, OUTPUT_REPLACE, png, bytes, error);
 		free(path);
 		png += bytes;
 	}
@@ -298,8 +299,8 @@ const struct command command_compare = {
 			 "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
 			 "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"
 			 "  albedo     the largest share of light sent back, for directions 0 to 85 degrees from the normal\n"
-			 "Where the file is the one that was packed, the errors that the record tells of each layer are measured again and "
-			 "must agree.\n"
+			 "Where the file is the one that was packed, the errors that the record tells of each layer\n"
+			 "are measured again and must agree.\n"
 			 "Cells that are invalid in the measured file count in nothing: they are black on both sides;\n"
 			 "so do those that `build` would take as holes (--zeros).\n"
 			 "\n"

@@ -206,9 +206,8 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 	if (used && confirmed == count)
 		printf("The errors that the records tell of their layers are confirmed.\n");
 	else if (used)
-		printf("The errors that the records tell of their layers are confirmed for %zu of %zu materials; the others were packed "
-		       "from other "
-		       "files, or failed.\n",
+		printf("The errors that the records tell of their layers are confirmed for %zu of %zu materials; "
+		       "the others were packed from other files, or failed.\n",
 		       confirmed, count);
 	return BP_OK;
 }

@@ -12,6 +12,7 @@
 #include "page_html.h"
 #include "page_sections.h"
 #include "page_work.h"
+#include "render/base64.h"
 #include "tool/interrupt.h"
 #include "tool/measured.h"
 #include "tool/progress.h"
@@ -171,7 +172,7 @@ static bp_status archive_embed(FILE *out, const struct page *page, bp_error *err
 		return error_set(error, status, reason.offset, "%s: %s%s", page->selection->path, reason.message,
 		                 status == BP_ERROR_LIMIT ? " do not fit into a page; serve it beside the page instead" : "");
 	fputs("<script type=\"application/x-brdfpack\" id=embedded>", out);
-	html_base64(out, (const uint8_t *)bytes, count);
+	base64_write(out, (const uint8_t *)bytes, count);
 	fputs("</script>\n", out);
 	free(bytes);
 	return BP_OK;

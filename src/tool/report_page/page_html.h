@@ -13,8 +13,6 @@ void html_text(FILE *out, const char *text);
 /* The same within <bdi>, so that a right-to-left name turns nothing around it. */
 void html_name(FILE *out, const char *name);
 
-void html_base64(FILE *out, const uint8_t *bytes, size_t count);
-
 /* <img> with the picture as PNG; `alt` is escaped here. `style`: its class. */
 bp_status html_picture(FILE *out, const struct picture *picture, const char *style, const char *alt, bp_error *error);
 
