@@ -89,8 +89,6 @@ static bool plan_grow(struct sphere_plan *plan)
 static bool plan_row(struct sphere_plan *plan, const struct angle_tables *angles, const struct light *light, uint32_t y)
 {
 	bool open = false;
-	if (!plan_grow(plan))
-		return false;
 	for (uint32_t x = 0; x < plan->size; x++) {
 		double normal[3], to[3];
 		bool lit = pixel_normal(plan->size, x, y, normal);
@@ -100,7 +98,6 @@ static bool plan_row(struct sphere_plan *plan, const struct angle_tables *angles
 			continue;
 		}
 		if (!open) {
-			/* a row meets the lit region in few stretches, but growth is cheap to make sure of */
 			if (!plan_grow(plan))
 				return false;
 			plan->runs[plan->run_count++] = (struct run){.pixel = x + plan->size * y};
@@ -112,12 +109,19 @@ static bool plan_row(struct sphere_plan *plan, const struct angle_tables *angles
 	return true;
 }
 
+static bp_status size_check(uint32_t size, bool rows_inside, bp_error *error)
+{
+	if (size >= 1 && size <= SPHERE_SIZE_MAX && rows_inside)
+		return BP_OK;
+	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an image of %u pixels: the size must be 1 to %d", size,
+	                 SPHERE_SIZE_MAX);
+}
+
 bp_status sphere_plan_make(enum lighting lighting, uint32_t size, uint32_t row_first, uint32_t row_count,
                            struct lattice_dims dims, struct sphere_plan **out, bp_error *error)
 {
-	if (size < 1 || size > SPHERE_SIZE_MAX || row_first > size || row_count > size - row_first)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an image of %u pixels: the size must be 1 to %d", size,
-		                 SPHERE_SIZE_MAX);
+	if (size_check(size, row_first <= size && row_count <= size - row_first, error))
+		return BP_ERROR_ARGUMENT;
 	struct light lights[LIGHTS_MAX];
 	int light_count = lights_make(lighting, lights);
 	struct sphere_plan *plan = calloc(1, sizeof *plan);
@@ -193,9 +197,8 @@ bp_status sphere_render(enum lighting lighting, const struct lookup_table *const
 
 bp_status sphere_image_alloc(uint32_t size, struct sphere_image *out, bp_error *error)
 {
-	if (size < 1 || size > SPHERE_SIZE_MAX)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an image of %u pixels: the size must be 1 to %d", size,
-		                 SPHERE_SIZE_MAX);
+	if (size_check(size, true, error))
+		return BP_ERROR_ARGUMENT;
 	struct sphere_image image = {.size = size, .unit = 1};
 	size_t pixels = (size_t)size * size;
 	image.rgb = calloc(3 * pixels, sizeof *image.rgb);

@@ -43,12 +43,11 @@ static bp_status items_read(struct making *making, bp_error *error)
 		return error_memory(error, page->count * sizeof *making->items);
 	for (size_t n = 0; n < page->count; n++) {
 		making->names[n] = making->items[n].entry.name;
-		if (selection_entry(page->selection, n, &making->items[n].entry, error) !=
-		    BP_OK) { /* the index is damaged: those before are shown */
-			report_error(page->selection->path, NULL, error);
-			page->selection->incomplete = true;
-			page->count = n;
-		}
+		if (selection_entry(page->selection, n, &making->items[n].entry, error) == BP_OK)
+			continue;
+		report_error(page->selection->path, NULL, error); /* the index is damaged: those before are shown */
+		page->selection->incomplete = true;
+		page->count = n;
 	}
 	return BP_OK;
 }
@@ -69,6 +68,7 @@ static int problem_note(void *user, const bp_problem *problem)
 	struct page *page = user;
 	char text[1024];
 	FILE *out = memory_stream_open(&page->verify);
+	page->problem_count++;
 	if (!out)
 		return 1;
 	error_describe(&problem->error, text, sizeof text);
@@ -80,7 +80,7 @@ static int problem_note(void *user, const bp_problem *problem)
 	html_text(out, text);
 	fputs("</li>\n", out);
 	fclose(out);
-	return ++page->problem_count >= PROBLEMS_MAX;
+	return page->problem_count >= PROBLEMS_MAX;
 }
 
 /* The viewer's part of the page, as `make viewer` leaves it beside the tool and `make install` under share; none is no error. */
@@ -100,42 +100,30 @@ static void viewer_find(struct page *page)
 	}
 }
 
-static char *text_copy(const char *text, size_t bytes)
-{
-	char *copy = malloc(bytes + 1);
-	if (copy) {
-		memcpy(copy, text, bytes);
-		copy[bytes] = '\0';
-	}
-	return copy;
-}
-
 static void result_take(void *user, const struct job_result *result)
 {
 	struct page *page = user;
 	struct page_outcome *outcome = &page->outcomes[result->number];
 	const struct page_item *item = &page->items[result->number];
+	const size_t head = sizeof outcome->result;
 	bp_error error = result->error;
-	if (!error.status && result->record_bytes >= sizeof outcome->result) {
-		const char *text = (const char *)result->record + sizeof outcome->result;
-		memcpy(&outcome->result, result->record, sizeof outcome->result);
-		outcome->sheet = text_copy(text, outcome->result.sheet_bytes);
-		outcome->details = text_copy(text + outcome->result.sheet_bytes, outcome->result.details_bytes);
-		if (!outcome->sheet || !outcome->details)
-			error_memory(&error, result->record_bytes);
+	if (!error.status && result->record_bytes >= head)
+		memcpy(&outcome->result, result->record, head);
+	if (!error.status && result->record_bytes != head + outcome->result.sheet_bytes + outcome->result.details_bytes) {
+		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is not whole");
 	} else if (!error.status) {
-		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is too short");
+		if ((outcome->html = malloc(result->record_bytes - head + 1)))
+			memcpy(outcome->html, result->record + head, result->record_bytes - head);
+		else
+			error_memory(&error, result->record_bytes);
 	}
 	if (error.status) {
 		char text[1024];
-		free(outcome->sheet);
-		outcome->sheet = NULL;
 		error_describe(&error, text, sizeof text);
-		outcome->fault = text_copy(text, strlen(text));
+		outcome->fault = strdup(text);
 		report_error(page->selection->path, item->entry.name, &error);
 		page->failed++;
 	}
-	outcome->done = true;
 	page->done++;
 	progress_show(page->done, page->count, (double)page->done / (double)page->count);
 }
@@ -208,8 +196,8 @@ static bp_status page_write(const struct page *page, struct output *output, bp_e
 	if (page->details && page->count)
 		fputs("<section id=details aria-labelledby=details-h><h2 id=details-h>Each material</h2>\n", out);
 	for (size_t n = 0; page->details && n < page->count; n++)
-		if (page->outcomes[n].sheet)
-			fwrite(page->outcomes[n].details, 1, page->outcomes[n].result.details_bytes, out);
+		if (page->outcomes[n].html)
+			fwrite(page->outcomes[n].html + page->outcomes[n].result.sheet_bytes, 1, page->outcomes[n].result.details_bytes, out);
 	if (page->details && page->count)
 		fputs("</section>\n", out);
 	page_end_write(out);
@@ -225,8 +213,7 @@ static void making_free(struct making *making)
 {
 	struct page *page = &making->page;
 	for (size_t n = 0; page->outcomes && n < page->count; n++) {
-		free(page->outcomes[n].sheet);
-		free(page->outcomes[n].details);
+		free(page->outcomes[n].html);
 		free(page->outcomes[n].fault);
 	}
 	free(page->outcomes);
@@ -251,8 +238,8 @@ int page_run(const struct page_options *options, struct selection *selection)
 	bp_status status = items_read(&making, &error);
 	if (status == BP_OK && options->embed && !page->viewer)
 		status = error_set(&error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                   "--embed: the viewer is not there, so nothing could read the archive; `make viewer` builds it (Debian "
-		                   "package emscripten)");
+		                   "--embed: the viewer is not there, so nothing could read the archive; "
+		                   "`make viewer` builds it (Debian package emscripten)");
 	if (status == BP_OK)
 		status = sources_find(&making, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */

@@ -1,5 +1,6 @@
 #include "page_html.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
 
 #include "name.h"
@@ -32,6 +33,16 @@ void html_name(FILE *out, const char *name)
 	fputs("<bdi>", out);
 	html_text(out, name);
 	fputs("</bdi>", out);
+}
+
+void html_table(FILE *out, const char *caption, ...)
+{
+	va_list columns;
+	fprintf(out, "<table><caption>%s</caption><thead><tr>", caption);
+	va_start(columns, caption);
+	for (const char *column; (column = va_arg(columns, const char *));)
+		fprintf(out, "%s%s", *column ? "<th scope=col>" : "<td>", column);
+	va_end(columns);
 }
 
 bp_status html_picture(FILE *out, const struct picture *picture, const char *style, const char *alt, bp_error *error)
