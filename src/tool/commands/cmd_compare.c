@@ -224,42 +224,22 @@ static int materials_compare(struct compare *compare)
 
 static int compare_main(const struct command *self, int argc, char **argv)
 {
-	enum { LIGHT = OPTION_LONG, SIZE, JSON, IMAGES, FORCE };
-	static const struct option names[] = {{"light", required_argument, NULL, LIGHT},
-	                                      {"size", required_argument, NULL, SIZE},
-	                                      {"json", no_argument, NULL, JSON},
-	                                      {"images", required_argument, NULL, IMAGES},
-	                                      {"jobs", required_argument, NULL, 'j'},
-	                                      {"force", no_argument, NULL, FORCE},
-	                                      {0}};
-	struct compare compare = {.workers = cores_usable(), .report.lightings = LIGHTINGS_ALL};
-	enum lighting lighting;
+	struct compare compare = {.workers = cores_usable()};
+	enum lighting lighting = LIGHTING_COUNT;
 	int64_t size = SPHERE_SIZE;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "j:", names)) >= 0)
-		switch (option) {
-		case LIGHT:
-			if (!option_light(self, optarg, &lighting))
-				return EXIT_USAGE;
-			compare.report.lightings = 1u << lighting;
-			break;
-		case SIZE:
-			if (!option_integer(self, "--size", optarg, 1, COMPARE_SIZE_MAX, &size))
-				return EXIT_USAGE;
-			break;
-		case FORCE: compare.force = true; break;
-		case JSON: compare.report.json = true; break;
-		case IMAGES: compare.images = optarg; break;
-		case 'j':
-			if (!option_jobs(self, optarg, &compare.workers))
-				return EXIT_USAGE;
-			break;
-		}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {{"light", 0, option_light, .to = &lighting},
+	                                    {"size", 0, option_integer, &size, 1, COMPARE_SIZE_MAX},
+	                                    {"json", 0, option_flag, .to = &compare.report.json},
+	                                    {"images", 0, option_text, .to = &compare.images},
+	                                    {"jobs", 'j', option_jobs, .to = &compare.workers},
+	                                    {"force", 0, option_flag, .to = &compare.force},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (argc - optind < 2)
 		return report_usage(self, "%s", argc == optind ? "no archive" : "no folder of measured files");
+	compare.report.lightings = lightings_of(lighting);
 	compare.archive_path = argv[optind];
 	compare.folder = argv[optind + 1];
 	if (!selection_open(&compare.selection, compare.archive_path, argv + optind + 2, argc - optind - 2))
@@ -267,12 +247,11 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	compare.job = (struct compare_job){.archive = compare.selection.archive,
 	                                   .images = compare.images != NULL,
 	                                   .plans = {.lightings = compare.report.lightings, .size = (uint32_t)size}};
-	int code = EXIT_FAILED;
-	if (compare.selection.count > 0) {
+	code = EXIT_FAILED;
+	if (compare.selection.count > 0)
 		code = materials_compare(&compare);
-	} else if (!compare.selection.incomplete) {
+	else if (!compare.selection.incomplete)
 		report_text("%s: no material in it", compare.archive_path);
-	}
 	if (code != EXIT_OK && compare.images_made)
 		rmdir(compare.images); /* where it holds pictures it stays */
 	comparison_plans_free(&compare.job.plans);

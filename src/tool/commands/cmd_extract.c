@@ -193,20 +193,21 @@ static void material_failed(void *user, uint64_t n, const bp_error *error)
 	report_error(extraction->selection.path, extraction->entry.name[0] ? extraction->entry.name : NULL, error);
 }
 
-/* NULL, after a message, where there is no format of that name. */
-static const struct format *format_find(const struct command *self, const char *name)
+static bool format_take(const struct command *self, const struct option_rule *rule, const char *text)
 {
 	struct name_guess guess;
-	name_guess_start(&guess, name);
+	name_guess_start(&guess, text);
 	for (int n = 0; n < FORMAT_COUNT; n++) {
-		if (!strcmp(FORMATS[n].name, name))
-			return &FORMATS[n];
+		if (!strcmp(FORMATS[n].name, text)) {
+			*(const struct format **)rule->to = &FORMATS[n];
+			return true;
+		}
 		name_guess_offer(&guess, FORMATS[n].name);
 	}
 	const char *best = name_guess_best(&guess);
-	report_usage(self, "--format: '%s' is none of merl, json, bsdf and mbsdf%s%s%s", name, best ? "; did you mean '" : "",
+	report_usage(self, "--format: '%s' is none of merl, json, bsdf and mbsdf%s%s%s", text, best ? "; did you mean '" : "",
 	             best ? best : "", best ? "'?" : "");
-	return NULL;
+	return false;
 }
 
 /* What belongs together on the command line. */
@@ -229,7 +230,8 @@ static int wishes_take(const struct command *self, const struct wishes *wishes, 
 		return report_usage(self, "--spectral is about --format bsdf");
 	if (wishes->size && !exports)
 		return report_usage(self, "--size is about --format bsdf and --format mbsdf");
-	if (wishes->size && !option_bytes(self, "--size", wishes->size, 1, EXPORT_BYTES_MAX, &most))
+	if (wishes->size &&
+	    !option_bytes(self, &(const struct option_rule){"size", 0, option_bytes, &most, 1, EXPORT_BYTES_MAX}, wishes->size))
 		return EXIT_USAGE;
 	if (exports && (uint64_t)most < least)
 		return report_usage(
@@ -242,36 +244,20 @@ static int wishes_take(const struct command *self, const struct wishes *wishes, 
 
 static int extract_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_FORCE, OPTION_ANY_LATTICE, OPTION_SPECTRAL, OPTION_SIZE };
-	static const struct option names[] = {{"directory", required_argument, NULL, 'C'},
-	                                      {"format", required_argument, NULL, OPTION_FORMAT},
-	                                      {"plain", no_argument, NULL, OPTION_PLAIN},
-	                                      {"force", no_argument, NULL, OPTION_FORCE},
-	                                      {"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
-	                                      {"spectral", no_argument, NULL, OPTION_SPECTRAL},
-	                                      {"size", required_argument, NULL, OPTION_SIZE},
-	                                      {0}};
 	struct extraction extraction = {.form = FORM_MERL};
 	struct wishes wishes = {.format = FORMATS, .folder = "."};
-	int option;
-
-	while ((option = options_next(self, argc, argv, "C:", names)) >= 0)
-		switch (option) {
-		case 'C': wishes.folder = optarg; break;
-		case OPTION_PLAIN: wishes.plain = true; break;
-		case OPTION_FORCE: wishes.force = true; break;
-		case OPTION_ANY_LATTICE: extraction.room.any_lattice = true; break;
-		case OPTION_SPECTRAL: wishes.spectral = true; break;
-		case OPTION_SIZE: wishes.size = optarg; break;
-		case OPTION_FORMAT:
-			wishes.format = format_find(self, optarg);
-			if (!wishes.format)
-				return EXIT_USAGE;
-			break;
-		}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
-	int code = wishes_take(self, &wishes, &extraction);
+	const struct option_rule rules[] = {{"directory", 'C', option_text, .to = &wishes.folder},
+	                                    {"format", 0, format_take, .to = &wishes.format},
+	                                    {"plain", 0, option_flag, .to = &wishes.plain},
+	                                    {"force", 0, option_flag, .to = &wishes.force},
+	                                    {"any-lattice", 0, option_flag, .to = &extraction.room.any_lattice},
+	                                    {"spectral", 0, option_flag, .to = &wishes.spectral},
+	                                    {"size", 0, option_text, .to = &wishes.size},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
+	code = wishes_take(self, &wishes, &extraction);
 	if (code == EXIT_OK)
 		code = selection_from(&extraction.selection, self, argv + optind, argc - optind);
 	if (code != EXIT_OK)

@@ -174,20 +174,17 @@ static void totals_print(const struct totals *totals)
 
 static int list_main(const struct command *self, int argc, char **argv)
 {
-	enum { JSON = OPTION_LONG, SHA256 };
-	static const struct option names[] = {{"json", no_argument, NULL, JSON}, {"sha256", no_argument, NULL, SHA256}, {0}};
 	struct selection selection;
 	struct totals totals = {0};
 	bool json = false, digest = false;
-	int option, width = 0;
-
-	while ((option = options_next(self, argc, argv, "", names)) >= 0)
-		*(option == JSON ? &json : &digest) = true;
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
-	int opened = selection_from(&selection, self, argv + optind, argc - optind);
-	if (opened != EXIT_OK)
-		return opened;
+	int width = 0;
+	const struct option_rule rules[] = {{"json", 0, option_flag, .to = &json}, {"sha256", 0, option_flag, .to = &digest}, {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
+	code = selection_from(&selection, self, argv + optind, argc - optind);
+	if (code != EXIT_OK)
+		return code;
 	if (selection.all && !json) {
 		width = widest_name(&selection);
 		printf("%-*s %9s  %-8s %6s  %8s   %-29s   %s\n", width, "material", "bytes", "profile", "layers", "log RMSE",

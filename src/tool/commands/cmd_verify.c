@@ -60,21 +60,15 @@ static void summary_print(const struct findings *findings, uint64_t materials, u
 
 static int verify_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_DEEP = OPTION_LONG, OPTION_JSON };
-	static const struct option names[] = {
-		{"deep", no_argument, NULL, OPTION_DEEP}, {"json", no_argument, NULL, OPTION_JSON}, {0}};
 	struct findings findings = {0};
 	bp_archive *archive = NULL;
 	bool deep = false;
 	bp_error error;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "", names)) >= 0) {
-		deep |= option == OPTION_DEEP;
-		findings.json |= option == OPTION_JSON;
-	}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {
+		{"deep", 0, option_flag, .to = &deep}, {"json", 0, option_flag, .to = &findings.json}, {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no archive" : "more than one archive");
 	findings.path = argv[optind];
