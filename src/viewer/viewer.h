@@ -25,7 +25,6 @@ VIEWER_CALL double viewer_error_offset(void);   /* the byte in the file, or -1 *
 VIEWER_CALL struct bp_archive *viewer_archive_open(uint32_t source, double bytes);
 VIEWER_CALL void viewer_archive_close(struct bp_archive *archive);
 VIEWER_CALL double viewer_archive_count(const struct bp_archive *archive);
-VIEWER_CALL double viewer_archive_read_bytes(const struct bp_archive *archive);
 /* Everything `verify --deep` checks; a status. */
 VIEWER_CALL uint32_t viewer_archive_verify(const struct bp_archive *archive);
 /* The number of a name, or -1. */
