@@ -135,10 +135,8 @@ static bp_status json_write(const struct record_head *head, const struct origin 
 	if (!memory)
 		return error_memory(error, BUFSIZ);
 	struct json json = json_begin(memory, true);
-	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
 	facts_full(&json, head, origin);
-	json_close(&json);
 	json_finish(&json);
 	fclose(memory);
 	status = text.failed ? error_memory(error, text.count) : output_file_write_whole(path, rule, text.bytes, text.count, error);

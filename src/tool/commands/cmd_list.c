@@ -141,17 +141,14 @@ static void material_print(const struct record_head *head, const struct origin *
 static void material_json(const struct record_head *head, const struct origin *origin)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
 	facts_full(&json, head, origin);
-	json_close(&json);
 	json_finish(&json);
 }
 
 static void totals_json(const struct selection *selection, const struct totals *totals, const char *sha256)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_bool(&json, "summary", true);
 	json_string(&json, "archive", selection->path);
 	json_integer(&json, "materials", totals->materials);
@@ -159,7 +156,6 @@ static void totals_json(const struct selection *selection, const struct totals *
 	json_integer(&json, "source_bytes", totals->source_bytes);
 	if (sha256[0])
 		json_string(&json, "sha256", sha256);
-	json_close(&json);
 	json_finish(&json);
 }
 

@@ -22,13 +22,11 @@ static int problem_report(void *user, const bp_problem *problem)
 		char text[1024];
 		struct json json = json_begin(stdout, false);
 		error_describe(&problem->error, text, sizeof text);
-		json_object(&json, NULL);
 		if (problem->material)
 			json_string(&json, "name", problem->material);
 		if (problem->error.offset != BP_NO_OFFSET)
 			json_integer(&json, "offset", problem->error.offset);
 		json_string(&json, "error", text);
-		json_close(&json);
 		json_finish(&json);
 	} else {
 		report_error(findings->path, problem->material, &problem->error);
@@ -40,14 +38,12 @@ static void summary_print(const struct findings *findings, uint64_t materials, u
 {
 	if (findings->json) {
 		struct json json = json_begin(stdout, false);
-		json_object(&json, NULL);
 		json_bool(&json, "summary", true);
 		json_string(&json, "archive", findings->path);
 		json_bool(&json, "deep", deep);
 		json_integer(&json, "materials", materials);
 		json_integer(&json, "bytes_read", bytes);
 		json_integer(&json, "problems", findings->count);
-		json_close(&json);
 		json_finish(&json);
 	} else if (findings->count == 0) {
 		printf("%s: %" PRIu64 " material%s%s, no problem found\n", findings->path, materials, materials == 1 ? "" : "s",

@@ -110,7 +110,6 @@ static void json_row(const struct compare_report *report, const struct compare_i
 	const struct worst_cell *worst = &item->result.comparison.worst;
 	const struct energy *decoded = &item->result.comparison.decoded;
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_string(&json, "name", item->entry.name);
 	figures_json(&json, report, values);
 	json_string(&json, "recorded_errors", item->result.confirmed ? "confirmed" : "of another file");
@@ -126,7 +125,6 @@ static void json_row(const struct compare_report *report, const struct compare_i
 	json_object(&json, "albedo_at");
 	json_string(&json, "channel", CHANNEL_NAMES[decoded->channel]);
 	json_number(&json, "theta_o", decoded->theta_o);
-	json_close(&json);
 	json_close(&json);
 	json_finish(&json);
 }
@@ -159,7 +157,6 @@ static void summary_json(const struct compare_report *report, double rows[SUMMAR
                          size_t confirmed, size_t failed)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_bool(&json, "summary", true);
 	json_integer(&json, "materials", used);
 	json_integer(&json, "confirmed", confirmed);
@@ -169,7 +166,6 @@ static void summary_json(const struct compare_report *report, double rows[SUMMAR
 		figures_json(&json, report, rows[r]);
 		json_close(&json);
 	}
-	json_close(&json);
 	json_finish(&json);
 }
 
