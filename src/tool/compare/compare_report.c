@@ -110,7 +110,7 @@ static void json_row(const struct compare_report *report, const struct compare_i
 	const struct worst_cell *worst = &item->result.comparison.worst;
 	const struct energy *decoded = &item->result.comparison.decoded;
 	struct json json = json_begin(stdout, false);
-	json_string(&json, "name", item->entry.name);
+	json_string(&json, "name", item->name);
 	figures_json(&json, report, values);
 	json_string(&json, "recorded_errors", item->result.confirmed ? "confirmed" : "of another file");
 	json_object(&json, "largest_relative_at");
@@ -136,7 +136,7 @@ void compare_report_row(const struct compare_report *report, const struct compar
 	if (report->json)
 		json_row(report, item, values);
 	else
-		text_row(report, item->entry.name, values, &item->result.comparison.worst);
+		text_row(report, item->name, values, &item->result.comparison.worst);
 }
 
 enum { MEDIAN, WORST, MEAN, SUMMARY_ROWS };

@@ -14,7 +14,6 @@
 #include "page_work.h"
 #include "render/base64.h"
 #include "tool/interrupt.h"
-#include "tool/measured.h"
 #include "tool/progress.h"
 #include "tool/report.h"
 #include "tool/whole_file.h"
@@ -25,42 +24,22 @@ enum { SIZE_DETAILS = SPHERE_SIZE, SIZE_SHEET = 40, EMBED_BYTES_MAX = 512 << 20,
 /* The materials of the page while it is made. */
 struct making {
 	struct page page;
-	struct page_item *items;
-	const char **names; /* the items' */
-	struct source_list sources;
 	struct page_job job;
 };
 
-static bp_status items_read(struct making *making, bp_error *error)
+/* Where the index is damaged the materials before that are shown. */
+static bp_status items_read(struct page *page, bp_error *error)
 {
-	struct page *page = &making->page;
-	page->count = (size_t)page->selection->count;
-	making->items = calloc(page->count + 1, sizeof *making->items);
-	making->names = calloc(page->count + 1, sizeof *making->names);
-	page->outcomes = calloc(page->count + 1, sizeof *page->outcomes);
-	page->items = making->items;
-	if (!making->items || !making->names || !page->outcomes)
-		return error_memory(error, page->count * sizeof *making->items);
-	for (size_t n = 0; n < page->count; n++) {
-		making->names[n] = making->items[n].entry.name;
-		if (selection_entry(page->selection, n, &making->items[n].entry, error) == BP_OK)
-			continue;
-		report_error(page->selection->path, NULL, error); /* the index is damaged: those before are shown */
+	const bp_status status = measured_set_read(page->selection, &page->measured, error);
+	if (status == BP_ERROR_MEMORY)
+		return status;
+	if (status != BP_OK) {
+		report_error(page->selection->path, NULL, error);
 		page->selection->incomplete = true;
-		page->count = n;
 	}
-	return BP_OK;
-}
-
-static bp_status sources_find(struct making *making, bp_error *error)
-{
-	const struct page *page = &making->page;
-	if (!page->options->measured)
-		return BP_OK;
-	bp_status status = measured_find(page->options->measured, making->names, page->count, &making->sources, error);
-	for (size_t n = 0; status == BP_OK && n < page->count; n++)
-		making->items[n].source = source_list_find(&making->sources, making->items[n].entry.name);
-	return status;
+	page->count = page->measured.count;
+	page->outcomes = calloc(page->count + 1, sizeof *page->outcomes);
+	return page->outcomes ? BP_OK : error_memory(error, page->count * sizeof *page->outcomes);
 }
 
 static int problem_note(void *user, const bp_problem *problem)
@@ -104,7 +83,6 @@ static void result_take(void *user, const struct job_result *result)
 {
 	struct page *page = user;
 	struct page_outcome *outcome = &page->outcomes[result->number];
-	const struct page_item *item = &page->items[result->number];
 	const size_t head = sizeof outcome->result;
 	bp_error error = result->error;
 	if (!error.status && result->record_bytes >= head)
@@ -121,7 +99,7 @@ static void result_take(void *user, const struct job_result *result)
 		char text[1024];
 		error_describe(&error, text, sizeof text);
 		outcome->fault = strdup(text);
-		report_error(page->selection->path, item->entry.name, &error);
+		report_error(page->selection->path, page->measured.name[result->number], &error);
 		page->failed++;
 	}
 	page->done++;
@@ -134,7 +112,7 @@ static bp_status materials_draw(struct making *making, bp_error *error)
 	const struct page_options *options = page->options;
 	making->job =
 		(struct page_job){.archive = page->selection->archive,
-	                      .items = making->items,
+	                      .items = page->measured.item,
 	                      .details = page->details,
 	                      .measured = options->measured != NULL,
 	                      .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
@@ -145,7 +123,7 @@ static bp_status materials_draw(struct making *making, bp_error *error)
 	bp_status status = selection_dims(page->selection, &dims) ? comparison_plans_make(&making->job.plans, dims, error) : BP_OK;
 	progress_start(!options->quiet);
 	if (status == BP_OK)
-		status = workers_run(&pool, making->names, page->count, error);
+		status = workers_run(&pool, page->measured.name, page->count, error);
 	progress_stop();
 	return status;
 }
@@ -217,11 +195,9 @@ static void making_free(struct making *making)
 		free(page->outcomes[n].fault);
 	}
 	free(page->outcomes);
-	free(making->items);
-	free(making->names);
 	free(page->viewer);
 	byte_buffer_free(&page->verify);
-	source_list_free(&making->sources);
+	measured_set_free(&page->measured);
 	comparison_plans_free(&making->job.plans);
 }
 
@@ -235,13 +211,13 @@ int page_run(const struct page_options *options, struct selection *selection)
 	page->details = selection->count <= PAGE_DETAILS_MAX;
 	page->archive_bytes = stat(selection->path, &facts) == 0 ? (uint64_t)facts.st_size : 0;
 	viewer_find(page);
-	bp_status status = items_read(&making, &error);
+	bp_status status = items_read(page, &error);
 	if (status == BP_OK && options->embed && !page->viewer)
 		status = error_set(&error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
 		                   "--embed: the viewer is not there, so nothing could read the archive; "
 		                   "`make viewer` builds it (Debian package emscripten)");
-	if (status == BP_OK)
-		status = sources_find(&making, &error);
+	if (status == BP_OK && options->measured)
+		status = measured_set_find(&page->measured, options->measured, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */
 		status = output_file_open(options->output, OUTPUT_REPLACE, &output.file, &error);
 	if (status == BP_OK) {

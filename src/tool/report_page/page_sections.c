@@ -85,9 +85,9 @@ void page_sheet_write(FILE *out, const struct page *page)
 			continue;
 		}
 		fputs("<li class=\"tile missing\" data-name=\"", out);
-		html_text(out, page->items[n].entry.name);
+		html_text(out, page->measured.name[n]);
 		fputs("\"><span class=\"ball hole\" aria-hidden=true>?</span><span class=name>", out);
-		html_name(out, page->items[n].entry.name);
+		html_name(out, page->measured.name[n]);
 		fputs("</span><small>missing: ", out);
 		html_text(out, outcome->fault ? outcome->fault : "not decoded");
 		fputs("</small></li>\n", out);
@@ -122,7 +122,7 @@ static void worst_write(FILE *out, const struct page *page, const struct page_ou
 	fputs("</tr></thead><tbody>", out);
 	for (size_t n = 0; n < count && n < WORST_COUNT; n++) {
 		const struct page_outcome *outcome = order[n];
-		const struct page_item *item = &page->items[outcome - page->outcomes];
+		const struct measured_item *item = &page->measured.item[outcome - page->outcomes];
 		fputs("<tr><th scope=row>", out);
 		if (page->details)
 			fprintf(out, "<a href=\"#m%llu\">", (unsigned long long)item->entry.ordinal);
@@ -149,7 +149,7 @@ void page_archive_write(FILE *out, const struct page *page)
 		const struct page_outcome *outcome = &page->outcomes[n];
 		if (!outcome->html)
 			continue;
-		ladders[count] = (struct plot_ladder){page->items[n].entry.name, outcome->result.layer_count, outcome->result.layer_bytes,
+		ladders[count] = (struct plot_ladder){page->measured.name[n], outcome->result.layer_count, outcome->result.layer_bytes,
 		                                      outcome->result.layer_error};
 		order[count++] = outcome;
 	}

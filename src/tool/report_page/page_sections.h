@@ -18,7 +18,7 @@ struct page_outcome {
 struct page {
 	const struct page_options *options;
 	struct selection *selection;
-	const struct page_item *items;
+	struct measured_set measured;
 	struct page_outcome *outcomes;
 	size_t count, done, failed;
 	bool details;

@@ -14,7 +14,7 @@
 
 /* What is known of the material while its part of the page is made. */
 struct subject {
-	const struct page_item *item;
+	const struct measured_item *item;
 	struct record_head head;
 	struct model *model;
 	struct expansion table;
