@@ -18,7 +18,10 @@ struct material {
 	struct expansion table; /* of the model */
 };
 
-/* A record's head, its model of all layers, and that one's table: *model and *table are the caller's to free, also after an error. */
+/*
+ * A record's head, its model of all layers, and that one's table: *model and *table are the caller's to free, also after an
+ * error.
+ */
 bp_status material_decode(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
                           struct model **model, struct expansion *table, bp_error *error);
 

@@ -19,7 +19,10 @@ struct measured_set {
 	struct source_list sources;
 };
 
-/* The selected materials. Where the index fails *error says why, and the set has those before. A set of zeros, or that failed, is freed too. */
+/*
+ * The selected materials. Where the index fails *error says why, and the set has those before. A set of zeros, or that failed, is
+ * freed too.
+ */
 bp_status measured_set_read(struct selection *selection, struct measured_set *out, bp_error *error);
 
 /* Searches a folder (or zip) for their files. What is passed over has been said. */
