@@ -52,7 +52,6 @@ TOOL_O       := $(TOOL_C:%.c=$(BUILD)/%.o)
 LIBRARY_LIBS := -lz -lm
 TOOL_LIBS    := -larchive -lnettle -lpng
 
-
 all: $(BUILD)/libbrdfpack.a $(BUILD)/libbrdfpack_reader.a $(BUILD)/$(SHARED) $(BUILD)/brdfpack
 
 help:
@@ -166,7 +165,7 @@ install: all $(BUILD)/brdfpack.pc $(addprefix $(BUILD)/,$(CMAKE_FILES))
 	install -m 644 scripts/completions/brdfpack.bash $(SHARE)/bash-completion/completions/brdfpack
 	install -m 644 scripts/completions/_brdfpack $(SHARE)/zsh/site-functions/
 	install -m 644 scripts/completions/brdfpack.fish $(SHARE)/fish/vendor_completions.d/
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man3
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(SHARE)/man/man1 $(SHARE)/man/man3
 	install -m 755 $(BUILD)/brdfpack $(DESTDIR)$(PREFIX)/bin/
 	install -m 644 src/brdfpack.h $(DESTDIR)$(PREFIX)/include/
 	install -m 644 $(BUILD)/libbrdfpack.a $(BUILD)/libbrdfpack_reader.a $(DESTDIR)$(LIBDIR)/
@@ -174,9 +173,9 @@ install: all $(BUILD)/brdfpack.pc $(addprefix $(BUILD)/,$(CMAKE_FILES))
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
 	install -m 644 $(BUILD)/brdfpack.pc $(DESTDIR)$(LIBDIR)/pkgconfig/
-	[ ! -f $(BUILD)/viewer/viewer.html ] || { install -d $(DESTDIR)$(PREFIX)/share/brdfpack && install -m 644 $(BUILD)/viewer/viewer.html $(BUILD)/viewer/index.html $(DESTDIR)$(PREFIX)/share/brdfpack/; }
-	install -m 644 src/tool/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man1/
-	install -m 644 src/libbrdfpack.3 $(DESTDIR)$(PREFIX)/share/man/man3/
+	[ ! -f $(BUILD)/viewer/viewer.html ] || { install -d $(SHARE)/brdfpack && install -m 644 $(BUILD)/viewer/viewer.html $(BUILD)/viewer/index.html $(SHARE)/brdfpack/; }
+	install -m 644 src/tool/brdfpack.1 $(SHARE)/man/man1/
+	install -m 644 src/libbrdfpack.3 $(SHARE)/man/man3/
 
 uninstall:
 	rm -f $(SHARE)/brdfpack/viewer.html $(SHARE)/brdfpack/index.html
@@ -184,7 +183,7 @@ uninstall:
 	rm -f $(SHARE)/zsh/site-functions/_brdfpack $(SHARE)/fish/vendor_completions.d/brdfpack.fish
 	rm -f $(DESTDIR)$(PREFIX)/bin/brdfpack $(DESTDIR)$(PREFIX)/include/brdfpack.h $(DESTDIR)$(LIBDIR)/libbrdfpack.a $(DESTDIR)$(LIBDIR)/libbrdfpack_reader.a
 	rm -f $(DESTDIR)$(LIBDIR)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libbrdfpack.so
-	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(DESTDIR)$(PREFIX)/share/man/man1/brdfpack.1 $(DESTDIR)$(PREFIX)/share/man/man3/libbrdfpack.3
+	rm -f $(DESTDIR)$(LIBDIR)/pkgconfig/brdfpack.pc $(SHARE)/man/man1/brdfpack.1 $(SHARE)/man/man3/libbrdfpack.3
 
 include src/viewer/viewer.mk
 

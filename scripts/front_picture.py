@@ -9,45 +9,15 @@ measured picture and brought to sRGB as render does; differences are of the sRGB
 import base64
 import math
 import os
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
+
+from spheres import covered, exposure, png, render, srgb
 
 MATERIALS = [("beetle-wing", "a beetle's wing"), ("blue-car-paint", "a metallic paint"), ("cast-aluminium", "a rough metal")]
 BUDGETS = [60400, 4096]
 SIZE = 112
-COVERED_BELOW = 0.99  # of the squared radius, as render draws
-
-
-def pfm_read(path):
-    """Rows from the top, each a list of (R, G, B)."""
-    with open(path, "rb") as file:
-        data = file.read()
-    kind, extents, scale, pixels = data.split(b"\n", 3)
-    assert kind == b"PF" and extents == b"%d %d" % (SIZE, SIZE)
-    unit = -float(scale)
-    values = [unit * v for v in struct.unpack("<%df" % (3 * SIZE * SIZE), pixels)]
-    rows = [[tuple(values[3 * (x + SIZE * y) : 3 * (x + SIZE * y) + 3]) for x in range(SIZE)] for y in range(SIZE)]
-    return rows[::-1]
-
-
-def covered(x, y):
-    return ((2 * x + 1) / SIZE - 1) ** 2 + (1 - (2 * y + 1) / SIZE) ** 2 < COVERED_BELOW
-
-
-def exposure(rows):
-    means = sorted(sum(rows[y][x]) / 3 for y in range(SIZE) for x in range(SIZE) if covered(x, y))
-    return 0.9 / max(1e-12, means[int(0.9 * len(means))])
-
-
-def srgb(rows, factor):
-    def curve(value):
-        value = min(1, max(0, value * factor))
-        return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-    return [[tuple(curve(v) for v in pixel) for pixel in row] for row in rows]
 
 
 def difference(a, b):
@@ -55,27 +25,15 @@ def difference(a, b):
 
 
 def psnr(a, b):
-    squares = [(p - q) ** 2 for y in range(SIZE) for x in range(SIZE) if covered(x, y) for p, q in zip(a[y][x], b[y][x])]
+    squares = [(p - q) ** 2 for y in range(SIZE) for x in range(SIZE) if covered(SIZE, x, y) for p, q in zip(a[y][x], b[y][x])]
     return 10 * math.log10(len(squares) / max(1e-12, sum(squares)))
 
 
-def png(rows):
-    """RGBA; what is not covered is transparent. Each row is coded as its difference from the one above (PNG's filter 2)."""
-    above, lines = bytes(4 * SIZE), b""
-    for y, row in enumerate(rows):
-        line = b"".join(bytes([round(255 * v) for v in pixel] + [255]) if covered(x, y) else bytes(4) for x, pixel in enumerate(row))
-        lines += b"\2" + bytes((p - q) % 256 for p, q in zip(line, above))
-        above = line
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    head = struct.pack(">IIBBBBB", SIZE, SIZE, 8, 6, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(lines, 9)) + chunk(b"IEND", b"")
-
-
 def image(rows, column, row):
-    data = base64.b64encode(png(rows)).decode()
+    """RGBA; what is not covered is transparent."""
+    lines = [b"".join(bytes([round(255 * v) for v in pixel] + [255]) if covered(SIZE, x, y) else bytes(4) for x, pixel in enumerate(line))
+             for y, line in enumerate(rows)]
+    data = base64.b64encode(png(lines, 4)).decode()
     return '<image x="%d" y="%d" width="%d" height="%d" href="data:image/png;base64,%s"/>' % (column, row, SIZE, SIZE, data)
 
 
@@ -90,21 +48,16 @@ def main(tool, folder, out):
     for n, head in enumerate(heads):
         parts.append(text(n * step + SIZE // 2, 16, 13, head))
     with tempfile.TemporaryDirectory() as scratch:
-        def render(*material):
-            path = os.path.join(scratch, "sphere.pfm")
-            subprocess.run([tool, "render", "--force", "--size", str(SIZE), "-o", path, *material], check=True)
-            return pfm_read(path)
-
         for line, (name, words) in enumerate(MATERIALS):
             source, y = os.path.join(folder, name + ".binary"), top + line * height
-            measured = render(source)
+            measured = render(tool, scratch, SIZE, source)
             factor = exposure(measured)
             reference = srgb(measured, factor)
             parts += [image(reference, 0, y), text(SIZE // 2, y + SIZE + 15, 12, words)]
             for n, budget in enumerate(BUDGETS):
                 archive = os.path.join(scratch, "one.bpk")
                 subprocess.run([tool, "build", "-q", "--budget", str(budget), "-o", archive, source], check=True)
-                decoded = srgb(render(archive, name), factor)
+                decoded = srgb(render(tool, scratch, SIZE, archive, name), factor)
                 dB, x = psnr(reference, decoded), (1 + 2 * n) * step
                 told.append("%s at %d bytes: %.1f dB" % (words, budget, dB))
                 parts += [image(decoded, x, y), image(difference(reference, decoded), x + step, y), text(x + SIZE + 5, y + SIZE + 15, 12, "%.1f dB" % dB)]

@@ -30,24 +30,14 @@ debian="dpkg-dev debhelper lintian"
 bench="gnuplot-nox:gnuplot python3:python3 libgsl-dev liblapacke-dev libzfp-dev libzstd-dev liblzma-dev"
 viewer="emscripten:emcc nodejs:node chromium:chromium python3:python3"
 
+groups="build test slow slurm arm64 endian mitsuba debian bench viewer"
 wanted=""
 for group in "${@:-build}"; do
-	case "$group" in
-	build) wanted+=" $build" ;;
-	test) wanted+=" $test" ;;
-	slow) wanted+=" $slow" ;;
-	slurm) wanted+=" $slurm" ;;
-	arm64) wanted+=" $arm64" ;;
-	endian) wanted+=" $endian" ;;
-	mitsuba) wanted+=" $mitsuba" ;;
-	debian) wanted+=" $debian" ;;
-	bench) wanted+=" $bench" ;;
-	viewer) wanted+=" $viewer" ;;
-	*)
-		echo "setup.sh: unknown group '$group'; groups are build, test, slow, slurm, arm64, endian, mitsuba, debian, bench, viewer" >&2
+	if [[ " $groups " != *" $group "* ]]; then
+		echo "setup.sh: unknown group '$group'; groups are ${groups// /, }" >&2
 		exit 2
-		;;
-	esac
+	fi
+	wanted+=" ${!group}"
 done
 
 missing=()

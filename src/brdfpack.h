@@ -61,8 +61,8 @@ typedef enum bp_status {
 	BP_ERROR_MEMORY = 2,   /* an allocation failed */
 	BP_ERROR_IO = 3,       /* the system refused to read or write */
 	BP_ERROR_NOT_OURS = 4, /* this is not a brdfpack archive (or not a MERL file) */
-	BP_ERROR_UNSUPPORTED =
-		5, /* intact, but made for a newer reader, or by a writer so old that it is no longer read: the message says */
+	/* intact, but made for a newer reader, or by a writer so old that it is no longer read: the message says */
+	BP_ERROR_UNSUPPORTED = 5,
 	BP_ERROR_CORRUPT = 6,    /* damaged: a value that no writer writes */
 	BP_ERROR_CHECKSUM = 7,   /* damaged: a CRC32 differs */
 	BP_ERROR_LIMIT = 8,      /* beyond a limit that the specification sets */
@@ -116,7 +116,8 @@ BP_API bp_status bp_archive_open_memory(const void *bytes, size_t count, bp_arch
 
 /*
  * Reads `count` bytes (at least 1) at `offset`, within the size that was told, and returns 0, or anything else where it
- * cannot: the function that wanted them then fails with BP_ERROR_IO. Called from the threads that use the archive, several at once.
+ * cannot: the function that wanted them then fails with BP_ERROR_IO. Called from the threads that use the archive, several at
+ * once.
  */
 typedef int bp_read_fn(void *user, uint64_t offset, void *bytes, size_t count);
 
@@ -129,7 +130,10 @@ typedef struct bp_source {
 	uint64_t bytes; /* of the archive */
 } bp_source;
 
-/* The same through callbacks: an engine's own file system, a browser. *source is copied. BP_ERROR_ARGUMENT for a bad struct_bytes. */
+/*
+ * The same through callbacks: an engine's own file system, a browser. *source is copied. BP_ERROR_ARGUMENT for a bad
+ * struct_bytes.
+ */
 BP_API bp_status bp_archive_open_source(const bp_source *source, bp_archive **out, bp_error *error);
 
 BP_API void bp_archive_close(bp_archive *archive); /* NULL is allowed */
@@ -170,8 +174,8 @@ typedef struct bp_section {
 
 /*
  * Robust regression (DuMouchel and O'Brien 1989) of one channel's measured values, diffuse + specular x. Profile 1: x is the
- * channel's decoded model, over all measured cells, and decoding uses both numbers (0 and 1 where the line would lose the model). Profile 2: x is the measured mean of the three
- * channels, over some 65,000 cells: a summary, which decoding does not use.
+ * channel's decoded model, over all measured cells, and decoding uses both numbers (0 and 1 where the line would lose the model).
+ * Profile 2: x is the measured mean of the three channels, over some 65,000 cells: a summary, which decoding does not use.
  */
 typedef struct bp_channel {
 	double diffuse;  /* 1/sr */
@@ -214,7 +218,8 @@ BP_API bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_m
 
 /*
  * The layers, or the sections, of material `index`, in their order: fills at most `capacity` elements of element_bytes =
- * sizeof(bp_layer) or sizeof(bp_section) each, and sets *count (NULL is allowed) to how many there are. Reads as bp_archive_info does.
+ * sizeof(bp_layer) or sizeof(bp_section) each, and sets *count (NULL is allowed) to how many there are. Reads as bp_archive_info
+ * does.
  */
 BP_API bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_layer *layers,
                                    uint32_t capacity, uint32_t *count, bp_error *error);
@@ -249,8 +254,9 @@ typedef struct bp_table_options {
 	double max_log_rmse; /* as in bp_load_options */
 	bp_number number;
 	bp_layout layout;
-	int continued; /* 0: -1 where a cell lies below the horizon, beyond anything that was measured (bp_material_info's horizon_limit), as in
-	                         extracted files; 1: the model's smooth continuation there */
+	/* 0: -1 where a cell lies below the horizon, beyond anything that was measured (bp_material_info's horizon_limit), as in
+	   extracted files; 1: the model's smooth continuation there */
+	int continued;
 } bp_table_options;
 
 /* Bytes of a table of H x D x P cells: 3 values each. options NULL: as if zeroed. 0 for an unknown number. */
@@ -258,8 +264,9 @@ BP_API size_t bp_table_bytes(uint32_t theta_h, uint32_t theta_d, uint32_t phi_d,
 
 /*
  * Decodes material `index` into the caller's `values`, `bytes` of them, which must be bp_table_bytes of its lattice. Values are
- * in 1/sr, R G B, each of its cell's centre. This is what `brdfpack extract` writes, but for MERL's scale; what bp_material_evaluate reads
- * is rounded once more (bp_form). After a failure the values are unspecified. Needs some 17 bytes per cell while it works.
+ * in 1/sr, R G B, each of its cell's centre. This is what `brdfpack extract` writes, but for MERL's scale; what
+ * bp_material_evaluate reads is rounded once more (bp_form). After a failure the values are unspecified. Needs some 17 bytes per
+ * cell while it works.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, number, layout, continued, max_log_rmse, bytes), and those of bp_material_load.
  */
 BP_API bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values,
@@ -312,26 +319,30 @@ typedef struct bp_material bp_material;
 
 /* How a material lies in memory; bytes for a MERL lattice, in RGB / as mean. */
 typedef enum bp_form {
-	BP_FORM_EXPANDED = 0, /* 16 bits per value, relative error at most 2^-11 of the decoded value; 8.8 MB / 2.9 MB */
-	BP_FORM_COMPACT =
-		1, /* 8 bits per value, shared scales and colours: some 0.001 in log RMSE more, 0.01 where channels end at 0; 2.6 MB / 2.0 MB */
-	BP_FORM_PREVIEW = 2 /* expanded, but only every second value along each axis, each where it stands, and quicker to load: for a
-	                         look, with the first layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an
-	                         extent of the lattice is odd, all values are loaded */
+	/* 16 bits per value, relative error at most 2^-11 of the decoded value; 8.8 MB / 2.9 MB */
+	BP_FORM_EXPANDED = 0,
+	/* 8 bits per value, shared scales and colours: some 0.001 in log RMSE more, 0.01 where channels end at 0; 2.6 MB / 2.0 MB */
+	BP_FORM_COMPACT = 1,
+	/* expanded, but only every second value along each axis, each where it stands, and quicker to load: for a look, with the first
+	   layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an extent of the lattice is odd, all values are
+	   loaded */
+	BP_FORM_PREVIEW = 2
 } bp_form;
 
 typedef enum bp_colour {
 	BP_COLOUR_RGB = 0,
 	BP_COLOUR_MEAN = 1, /* achromatic: the mean of the channels, given back in all three; sections for colour are not read */
-	BP_COLOUR_R =
-		2, /* one channel, given back in all three. Of profile 1 only its sections are read, about a third; records of */
-	BP_COLOUR_G = 3, /* other profiles do not keep channels apart: BP_ERROR_UNSUPPORTED */
+	/* one channel, given back in all three. Of profile 1 only its sections are read, about a third; records of other profiles do
+	   not keep channels apart: BP_ERROR_UNSUPPORTED */
+	BP_COLOUR_R = 2,
+	BP_COLOUR_G = 3,
 	BP_COLOUR_B = 4
 } bp_colour;
 
 /*
- * Where the memory comes from that a material keeps. alloc returns `bytes` bytes at a multiple of `alignment` (a power of two up to 2^21), or
- * NULL; release takes back what alloc gave. Both are called within bp_material_load and bp_material_free only, by the calling thread.
+ * Where the memory comes from that a material keeps. alloc returns `bytes` bytes at a multiple of `alignment` (a power of two up
+ * to 2^21), or NULL; release takes back what alloc gave. Both are called within bp_material_load and bp_material_free only, by
+ * the calling thread.
  */
 typedef struct bp_allocator {
 	void *(*alloc)(void *user, size_t bytes, size_t alignment);
@@ -346,12 +357,12 @@ typedef struct bp_load_options {
 	bp_form form;
 	bp_colour colour;
 	int sampling; /* 1: also build the tables of bp_material_sample, _pdf and _albedo (0.2 MB); else 0 */
-	const bp_allocator
-		*allocator; /* NULL: malloc. Copied; all that bp_loaded counts in memory_bytes comes from it, and what is needed
-	                                  only while loading from malloc */
-	size_t
-		max_memory_bytes; /* refuse, with BP_ERROR_LIMIT, a material that may need more while it is loaded: 24 bytes per cell and 1 MB, 36 MB
-	                            for MERL's lattice. 0: twice that lattice's need, 72 MB; an archive's few bytes may ask for gigabytes */
+	/* NULL: malloc. Copied; all that bp_loaded counts in memory_bytes comes from it, and what is needed only while loading from
+	   malloc */
+	const bp_allocator *allocator;
+	/* refuse, with BP_ERROR_LIMIT, a material that may need more while it is loaded: 24 bytes per cell and 1 MB, 36 MB for MERL's
+	   lattice. 0: twice that lattice's need, 72 MB; an archive's few bytes may ask for gigabytes */
+	size_t max_memory_bytes;
 } bp_load_options;
 
 /* What was loaded. */
@@ -369,8 +380,8 @@ typedef struct bp_loaded {
 
 /*
  * Loads material `index` of the archive; options NULL: as if zeroed. The caller frees *out. Several threads
- * may load from one archive at once. The bits do not depend on the caller's rounding mode or flushing of denormals. Beside the result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a
- * MERL lattice; more only for records of megabytes.
+ * may load from one archive at once. The bits do not depend on the caller's rounding mode or flushing of denormals. Beside the
+ * result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a MERL lattice; more only for records of megabytes.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an unknown form or colour, sampling neither 0 nor 1, max_log_rmse negative
  * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
  */
@@ -384,7 +395,10 @@ BP_API bp_status bp_material_loaded(const bp_material *material, bp_loaded *load
 /* f(wi, wo), interpolated. An unusable direction gives 0. */
 BP_API void bp_material_evaluate(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
 
-/* f of the cell into which the directions fall, as the MERL database's own look-up gives it; of a preview, of the first of two cells along each axis. */
+/*
+ * f of the cell into which the directions fall, as the MERL database's own look-up gives it; of a preview, of the first of two
+ * cells along each axis.
+ */
 BP_API void bp_material_nearest(const bp_material *material, const float wi[3], const float wo[3], float rgb[3]);
 
 /*
@@ -426,8 +440,8 @@ BP_API void bp_material_pdf_batch(const bp_material *material, size_t count, con
 
 /*
  * The albedo as a table over the cosine: rgb[3 n + c] is bp_material_albedo where cos theta_o = (n + 1/2)/count. Renderers on
- * graphics processors keep 256 of them, as a texture that is looked up at cos theta_o. BP_ERROR_ARGUMENT where count is 0 or above 65536, or
- * the material was loaded without sampling. All angles for the first time take some 0.1 s.
+ * graphics processors keep 256 of them, as a texture that is looked up at cos theta_o. BP_ERROR_ARGUMENT where count is 0 or
+ * above 65536, or the material was loaded without sampling. All angles for the first time take some 0.1 s.
  */
 BP_API bp_status bp_material_albedo_table(const bp_material *material, size_t count, float *rgb, bp_error *error);
 
@@ -447,29 +461,28 @@ typedef struct bp_measured {
 } bp_measured;
 
 /*
- * Is told how much of the work is done, from 0 to 1, by the calling thread, many times; a result other than 0 cancels, after which
- * nothing is left. A share may be told twice, and falls back where records of several sizes are tried (max_error).
+ * Is told how much of the work is done, from 0 to 1, by the calling thread, many times; a result other than 0 cancels, after
+ * which nothing is left. A share may be told twice, and falls back where records of several sizes are tried (max_error).
  */
 typedef int bp_progress_fn(void *user, double share);
 
 /*
- * What cells mean that are 0 in all channels. Who reads a measured file that marks what was not measured by negative values, clamps
- * these at 0 and writes it back, has lost the marks; packed as black they spoil what is next to them.
+ * What cells mean that are 0 in all channels. Who reads a measured file that marks what was not measured by negative values,
+ * clamps these at 0 and writes it back, has lost the marks; packed as black they spoil what is next to them.
  *
- * BP_ZEROS_AUTO: where no value is negative and the cells below the horizon, or those below some cosine under it, hold one value, 0 or
- * another one that little else holds, they are holes: not measured. A mask says more: with a cell of mask 0 nothing is done. Cells above the
- * horizon stay what they are, black where they are 0.
+ * BP_ZEROS_AUTO: where no value is negative and the cells below the horizon, or those below some cosine under it, hold one value,
+ * 0 or another one that little else holds, they are holes: not measured. A mask says more: with a cell of mask 0 nothing is done.
+ * Cells above the horizon stay what they are, black where they are 0.
  * BP_ZEROS_HOLES: besides, every cell that is 0 in all channels is a hole. BP_ZEROS_MEASURED: values are taken as they are.
  */
 typedef enum bp_zeros { BP_ZEROS_AUTO = 0, BP_ZEROS_HOLES = 1, BP_ZEROS_MEASURED = 2 } bp_zeros;
 
 /* How to pack: what `brdfpack build` has as options. Zeroed but for struct_bytes: its defaults. */
 typedef struct bp_pack_options {
-	size_t struct_bytes;   /* sizeof(bp_pack_options) */
-	uint32_t profile;      /* 1: paper, 2 or 0: spectral */
-	uint32_t budget_bytes; /* largest record, 1000 to 4,000,000; 0: 60,400 */
-	double
-		max_error; /* > 0, 1e-6 to 10: instead, the smallest record whose log RMSE is at most this; a budget must not be given */
+	size_t struct_bytes;      /* sizeof(bp_pack_options) */
+	uint32_t profile;         /* 1: paper, 2 or 0: spectral */
+	uint32_t budget_bytes;    /* largest record, 1000 to 4,000,000; 0: 60,400 */
+	double max_error;         /* > 0, 1e-6 to 10: the smallest record whose log RMSE is at most this, and no budget_bytes */
 	uint32_t effort;          /* 1 to 9; 0: 5 */
 	bp_progress_fn *progress; /* NULL: none */
 	void *user;               /* its first argument */
@@ -477,11 +490,12 @@ typedef struct bp_pack_options {
 } bp_pack_options;
 
 /*
- * Packs one material under a name (UTF-8, 1 to 255 bytes, no control character, no `/`, not `.` or `..`) into a record, which is freed with bp_free.
- * A cell with a mask of 0, or any channel that is negative, NaN or infinite, counts as not measured; values above 2^1015 count as that. The record depends on the
- * values, name, source and options only: with those of a file it is the one that `brdfpack build` makes: values of an
- * extracted file, as double planes with MERL's scale and no mask, give the record that they carry, where `build` would keep it. Uses the calling thread; several may
- * pack at once. options NULL: as if zeroed. Needs some 90 MB for a MERL lattice.
+ * Packs one material under a name (UTF-8, 1 to 255 bytes, no control character, no `/`, not `.` or `..`) into a record, which is
+ * freed with bp_free. A cell with a mask of 0, or any channel that is negative, NaN or infinite, counts as not measured; values
+ * above 2^1015 count as that. The record depends on the values, name, source and options only: with those of a file it is the one
+ * that `brdfpack build` makes: values of an extracted file, as double planes with MERL's scale and no mask, give the record that
+ * they carry, where `build` would keep it. Uses the calling thread; several may pack at once. options NULL: as if zeroed. Needs
+ * some 90 MB for a MERL lattice.
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an option, the name), BP_ERROR_LIMIT (the extents, or a budget or bound that cannot be
  * kept), BP_ERROR_BAD_INPUT (no valid cell), BP_ERROR_CANCELLED, BP_ERROR_MEMORY.
  */
@@ -504,7 +518,8 @@ BP_API void bp_writer_free(bp_writer *writer); /* NULL is allowed; nothing is wr
 
 /*
  * Adds one record, in any order of names; copies it. Head and checksums are checked.
- * Errors: BP_ERROR_ARGUMENT for a name that is there already, BP_ERROR_MEMORY, and those of damaged records. The writer is as before then.
+ * Errors: BP_ERROR_ARGUMENT for a name that is there already, BP_ERROR_MEMORY, and those of damaged records. The writer is as
+ * before then.
  */
 BP_API bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error);
 
@@ -512,9 +527,9 @@ BP_API bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t 
 BP_API uint64_t bp_writer_count(const bp_writer *writer);
 
 /*
- * Writes the archive to a file beside `path`, syncs it, and renames it over `path`: what was there before, whatever it was, stays as
- * it was unless all of this succeeds. A link is followed; mode and owner are kept. Where only the folder could not be synced after
- * that, this is BP_OK, and the error's message says so; otherwise it is empty then. The writer stays usable.
+ * Writes the archive to a file beside `path`, syncs it, and renames it over `path`: what was there before, whatever it was, stays
+ * as it was unless all of this succeeds. A link is followed; mode and owner are kept. Where only the folder could not be synced
+ * after that, this is BP_OK, and the error's message says so; otherwise it is empty then. The writer stays usable.
  * Errors: BP_ERROR_IO, BP_ERROR_MEMORY, BP_ERROR_ARGUMENT for an empty path.
  */
 BP_API bp_status bp_writer_save(const bp_writer *writer, const char *path, bp_error *error);

@@ -1,8 +1,8 @@
 /*
  * environment.h: arithmetic as it is meant, whatever the caller set.
  *
- * A host may round another way (FE_DOWNWARD) or flush denormals. What is decoded, packed or kept must not depend on that: the public
- * functions that do so stand between the two calls. Evaluation does not: it rounds as its caller wants.
+ * A host may round another way (FE_DOWNWARD) or flush denormals. What is decoded, packed or kept must not depend on that: the
+ * public functions that do so stand between the two calls. Evaluation does not: it rounds as its caller wants.
  */
 #ifndef ENVIRONMENT_H
 #define ENVIRONMENT_H

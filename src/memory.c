@@ -62,3 +62,12 @@ void *memory_grown(void *list, size_t count, size_t size)
 		return list;
 	return realloc(list, (count ? 2 * count : 16) * size);
 }
+
+void *memory_roomy(void *block, size_t *room, size_t bytes)
+{
+	if (block && bytes <= *room)
+		return block;
+	free(block);
+	*room = 2 * bytes;
+	return malloc(*room ? *room : 1);
+}

@@ -18,11 +18,12 @@ void memory_prefer_huge(void *block, size_t bytes);
 void *memory_alloc(size_t bytes);
 
 /*
- * What is kept as long as its material. From half a huge page on it asks for huge pages, but beyond the first only where a block fills
- * them: one that is filled in part lies in memory as a whole, 4 MB for the compact form's 2.6, 10 for the expanded form's 8.8.
+ * What is kept as long as its material. From half a huge page on it asks for huge pages, but beyond the first only where a block
+ * fills them: one that is filled in part lies in memory as a whole, 4 MB for the compact form's 2.6, 10 for the expanded form's
+ * 8.8.
  *
- * It comes from the allocator that the calling thread has set, and goes back to it: malloc where none is. The public functions that
- * make or free a material set the material's own.
+ * It comes from the allocator that the calling thread has set, and goes back to it: malloc where none is. The public functions
+ * that make or free a material set the material's own.
  */
 void *memory_alloc_kept(size_t bytes);
 void memory_free_kept(void *block); /* NULL is allowed */
@@ -31,9 +32,15 @@ void memory_free_kept(void *block); /* NULL is allowed */
 const bp_allocator *memory_allocator_set(const bp_allocator *allocator);
 
 /*
- * A list with room for one more behind `count` elements of `size` bytes: the same, or realloc'ed. NULL: no memory; the list is as it
- * was. Lists that grow by this alone have room for a power of two, so nobody keeps it.
+ * A list with room for one more behind `count` elements of `size` bytes: the same, or realloc'ed. NULL: no memory; the list is as
+ * it was. Lists that grow by this alone have room for a power of two, so nobody keeps it.
  */
 void *memory_grown(void *list, size_t count, size_t size);
+
+/*
+ * A block of at least `bytes` bytes, whatever stands in it: the same, or a new one of twice as many. NULL: no memory, and the old
+ * one is freed.
+ */
+void *memory_roomy(void *block, size_t *room, size_t bytes);
 
 #endif

@@ -16,8 +16,8 @@
 const char *name_fault(const char *name, size_t count);
 
 /*
- * Length of the well-formed UTF-8 sequence at s (RFC 3629: no overlong form, no surrogate, at most U+10FFFF), its character in *code; or 0.
- * A NUL ends a sequence, so text that one ends may say 4 for `left`.
+ * Length of the well-formed UTF-8 sequence at s (RFC 3629: no overlong form, no surrogate, at most U+10FFFF), its character in
+ * *code; or 0. A NUL ends a sequence, so text that one ends may say 4 for `left`.
  */
 size_t name_character(const uint8_t *s, size_t left, uint32_t *code);
 

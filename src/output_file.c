@@ -311,6 +311,18 @@ void output_file_discard(struct output_file *out)
 	*out = (struct output_file){.fd = -1};
 }
 
+bp_status output_file_write_whole(const char *path, enum output_rule rule, const void *bytes, size_t count, bp_error *error)
+{
+	struct output_file file;
+	bp_status status = output_file_open(path, rule, &file, error);
+	if (!status)
+		status = output_file_write(&file, bytes, count, error);
+	if (!status)
+		return output_file_commit(&file, error);
+	output_file_discard(&file);
+	return status;
+}
+
 bp_status output_scratch_open(const char *path, int *fd, bp_error *error)
 {
 	struct output_file file;

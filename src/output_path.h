@@ -10,8 +10,8 @@
 #include "brdfpack.h"
 
 /*
- * Follows a link; *out is malloc'ed. Refuses (BP_ERROR_IO) what is no regular file. *found: a file is there, and *about what is known
- * of it.
+ * Follows a link; *out is malloc'ed. Refuses (BP_ERROR_IO) what is no regular file. *found: a file is there, and *about what is
+ * known of it.
  */
 bp_status output_path_resolve(const char *path, char **out, bool *found, struct stat *about, bp_error *error);
 

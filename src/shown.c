@@ -4,22 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* The character at s, of `length` bytes; length 0: no UTF-8 (RFC 3629). */
-static uint32_t character_read(const uint8_t *s, size_t *length)
-{
-	static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
-	const size_t n = s[0] < 0x80 ? 1 : s[0] < 0xC2 ? 0 : s[0] < 0xE0 ? 2 : s[0] < 0xF0 ? 3 : s[0] < 0xF5 ? 4 : 0;
-	uint32_t code = n < 2 ? s[0] : s[0] & (0x7Fu >> n);
-	for (size_t i = 1; i < n; i++) {
-		if ((s[i] & 0xC0) != 0x80) { /* the NUL too */
-			*length = 0;
-			return 0;
-		}
-		code = code << 6 | (s[i] & 0x3F);
-	}
-	*length = n && code >= least[n] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF) ? n : 0;
-	return code;
-}
+#include "name.h"
 
 struct range {
 	uint32_t first, last;
@@ -53,11 +38,11 @@ size_t shown_next(const char **from, char out[SHOWN_STEP_MAX], int *columns)
 {
 	static const char digits[] = "0123456789abcdef";
 	const uint8_t *s = (const uint8_t *)*from;
-	size_t length;
+	uint32_t code = 0;
 
 	if (!*s)
 		return 0;
-	const uint32_t code = character_read(s, &length);
+	const size_t length = name_character(s, SHOWN_STEP_MAX, &code); /* the NUL ends it sooner */
 	const bool plain = length > 0 && !IN(code, UNSEEN);
 	const size_t taken = length > 0 ? length : 1;
 	*from += taken;

@@ -72,10 +72,8 @@ static void heads_list(const bp_archive *archive, uint64_t first, uint64_t most)
 		if (archive_entry_origin(archive, &entry, &head, &origin, NULL) != BP_OK)
 			continue;
 		struct json json = json_begin(nowhere, true);
-		json_object(&json, NULL);
 		json_string(&json, "name", head.name);
 		facts_full(&json, &head, &origin);
-		json_close(&json);
 		json_finish(&json);
 	}
 }

@@ -5,22 +5,23 @@
 
 #include "tool/options.h"
 
-enum { WORDS_MAX = 32, OPTION_BUDGET = OPTION_LONG, OPTION_ERROR };
+enum { WORDS_MAX = 32 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 {
 	static const struct command command = {"fuzz", NULL, "", "Usage: fuzz\n"};
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
-	                                      {"jobs", required_argument, NULL, 'j'},
-	                                      {"budget", required_argument, NULL, OPTION_BUDGET},
-	                                      {"max-error", required_argument, NULL, OPTION_ERROR},
-	                                      {"quiet", no_argument, NULL, 'q'},
-	                                      {0}};
+	const char *output = NULL;
+	unsigned jobs = 1;
+	int64_t budget = 1000;
+	double error = 1;
+	bool quiet = false;
+	const struct option_rule rules[] = {
+		{"output", 'o', option_text, .to = &output},         {"jobs", 'j', option_jobs, .to = &jobs},
+		{"budget", 0, option_bytes, &budget, 1000, 4000000}, {"max-error", 0, option_number, &error, 1e-6, 10},
+		{"quiet", 'q', option_flag, .to = &quiet},           {0}};
 	char *text = malloc(count + 1), *words[WORDS_MAX + 2] = {strdup("fuzz")};
-	int word_count = 1, option;
-	int64_t number;
-	double real;
+	int word_count = 1;
 
 	memcpy(text, data, count);
 	text[count] = 0;
@@ -28,17 +29,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 		words[word_count++] = word;
 	char *const own = words[0]; /* getopt moves the others */
 	optind = 0;
-	while ((option = options_next(&command, word_count, words, "o:j:q", names)) >= 0) {
-		if (option == 'j' && option_integer(&command, "-j", optarg, 1, 256, &number) && (number < 1 || number > 256))
-			abort();
-		if (option == OPTION_BUDGET && option_bytes(&command, "--budget", optarg, 1000, 4000000, &number) &&
-		    (number < 1000 || number > 4000000))
-			abort();
-		if (option == OPTION_ERROR && option_number(&command, "--max-error", optarg, 1e-6, 10, &real) &&
-		    !(real >= 1e-6 && real <= 10))
-			abort();
-	}
-	if (option == OPTIONS_END && (optind < 1 || optind > word_count))
+	const int code = options_read(&command, word_count, words, rules);
+	if (code == OPTIONS_END ? optind < 1 || optind > word_count : code != EXIT_OK && code != EXIT_USAGE)
+		abort();
+	if (jobs < 1 || jobs > 256 || budget < 1000 || budget > 4000000 || !(error >= 1e-6 && error <= 10))
 		abort();
 	free(own);
 	free(text);

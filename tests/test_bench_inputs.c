@@ -99,6 +99,8 @@ static void the_quick_selection_spreads_over_the_list(void **unused)
 	check_names(&inputs, "abcde");
 	inputs_thin(&inputs, 3);
 	check_names(&inputs, "ace");
+	inputs_thin(&inputs, 1);
+	check_names(&inputs, "a");
 	inputs_free(&inputs);
 }
 

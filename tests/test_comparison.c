@@ -35,7 +35,7 @@ static void a_uniform_error_shows_in_every_figure_as_expected(void **state)
 	bp_error error;
 	struct lattice lattice;
 	struct expansion table;
-	struct comparison_plans plans = {.lightings = LIGHTINGS_ALL, .size = 12};
+	struct comparison_plans plans = {.lightings = lightings_of(LIGHTING_COUNT), .size = 12};
 	struct comparison comparison;
 	struct picture pictures[LIGHTING_COUNT] = {{0}};
 	tables_make(1.1, &lattice, &table);

@@ -68,11 +68,30 @@ static void a_list_grows_by_doubling_and_keeps_what_it_holds(void **user)
 	free(list);
 }
 
+static void a_block_is_kept_as_long_as_it_holds_what_is_asked_for(void **user)
+{
+	(void)user;
+	size_t room = 0;
+	char *block = memory_roomy(NULL, &room, 0), *first;
+	assert_non_null(block);
+	block = memory_roomy(block, &room, 100);
+	assert_non_null(block);
+	assert_int_equal(room, 200);
+	memset(block, 1, room);
+	first = block;
+	assert_ptr_equal(memory_roomy(block, &room, 200), first);
+	assert_int_equal(room, 200);
+	block = memory_roomy(block, &room, 201);
+	assert_int_equal(room, 402);
+	free(block);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_kept_block_takes_its_own_bytes_and_no_huge_page_more),
 		cmocka_unit_test(a_list_grows_by_doubling_and_keeps_what_it_holds),
+		cmocka_unit_test(a_block_is_kept_as_long_as_it_holds_what_is_asked_for),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "memory_stream.h"
+#include "render/base64.h"
 #include "tool/report_page/page_html.h"
 
 static struct byte_buffer printed;
@@ -72,7 +73,7 @@ static void base64_is_that_of_the_standard(void **user)
 	                                       {"\xff\xef\xbe", "/+++"}};
 	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
 		FILE *out = out_open();
-		html_base64(out, (const uint8_t *)cases[n][0], strlen(cases[n][0]));
+		base64_write(out, (const uint8_t *)cases[n][0], strlen(cases[n][0]));
 		assert_printed(out, cases[n][1]);
 	}
 }

@@ -293,7 +293,6 @@ static void a_band_of_rows_gives_the_rows_of_the_whole(void **state)
 	assert_int_equal(sphere_plan_make(LIGHTING_KEY, SIZE, 0, SIZE, SMALL, &plan, &error), BP_OK);
 	sphere_plan_render(plan, tables, 2, both);
 	assert_memory_equal(whole.rgb, bands.rgb, 3 * SIZE * SIZE * sizeof(float));
-	assert_true(sphere_plan_places(plan) > SIZE * SIZE && sphere_plan_places(plan) < 29 * SIZE * SIZE);
 	sphere_plan_free(plan);
 	memset(bands.rgb, 0xff, 3 * SIZE * SIZE * sizeof(float));
 	for (uint32_t y = 0; y < SIZE; y += 5) {

@@ -62,7 +62,7 @@ function psnr({ size, rgb }, canvas) {
 const CANVAS = `(() => { const from = viewer.find("v-canvas"), to = document.createElement("canvas"); to.width = from.width; to.height = from.height;
 	const context = to.getContext("2d"); context.drawImage(from, 0, 0); return Array.from(context.getImageData(0, 0, to.width, to.height).data); })()`;
 // When nothing is being loaded or drawn any more.
-const IDLE = `(async () => { do { await new Promise((done) => setTimeout(done, 50)); await viewer.painted(); } while (viewer.busy); })()`;
+const IDLE = `(async () => { do { await new Promise((done) => setTimeout(done, 50)); await viewer.draw(); } while (viewer.busy); })()`;
 const set = (id, value) => `(() => { const e = document.getElementById("${id}"); e.value = "${value}"; e.dispatchEvent(new Event("change")); e.dispatchEvent(new Event("input")); return ${IDLE}; })()`;
 const drop = (name, text) => `(async () => { const data = new DataTransfer(); data.items.add(new File([${text}], ${JSON.stringify(name)}));
 	document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true })); await ${IDLE}; })()`;
@@ -116,7 +116,7 @@ async function embedded(page) {
 	await page.mouse("mousePressed", ...at(0.5, 0.5), "left");
 	await page.mouse("mouseMoved", ...at(0.3, 0.6), "left");
 	await page.mouse("mouseReleased", ...at(0.3, 0.6), "left");
-	await page.value(`viewer.painted()`);
+	await page.value(`viewer.draw()`);
 	const light = await page.value(brightest);
 	check("the highlight is where the light was dragged", Math.hypot(light[0] - 0.3, light[1] - 0.6) < 0.08, light);
 	await page.mouse("mouseMoved", ...at(0.45, 0.5));

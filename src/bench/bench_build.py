@@ -15,26 +15,12 @@ import os
 import shutil
 import statistics
 import subprocess
-import sys
 import tempfile
-import time
 
 import bench_head
-from bench_head import TOOL
+from bench_head import TOOL, run
 
 GOAL = 10 # times reading the files once, by two workers
-
-
-def run(command):
-    """Wall seconds, processor seconds of all its processes, peak memory in MB of the largest."""
-    start = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    wall = time.perf_counter() - start
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode != 0:
-        sys.exit("%s: exit code %d" % (" ".join(command[:3]), process.returncode))
-    return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
 def drop_from_cache(files):

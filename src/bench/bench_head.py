@@ -4,6 +4,7 @@ import os
 import platform
 import subprocess
 import sys
+import time
 
 TOOL = os.environ.get("BRDFPACK", "build/brdfpack")
 
@@ -33,6 +34,19 @@ def materials(folder, names=None):
     if not files:
         sys.exit("%s: no *.binary files%s" % (folder, " of those names" if names else ""))
     return files
+
+
+def run(command):
+    """Wall seconds, processor seconds of all its processes, peak memory in MB of the largest (no less than this program's own, whose copy
+    it begins as)."""
+    start = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    wall = time.perf_counter() - start
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        sys.exit("%s: exit code %d" % (" ".join(command[:4]), process.returncode))
+    return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
 def lattice_flags(any_lattice):

@@ -12,9 +12,7 @@ import os
 import shutil
 import struct
 import subprocess
-import sys
 import tempfile
-import time
 
 import bench_head
 from bench_head import TOOL
@@ -26,22 +24,12 @@ ROUNDS = 3  # of which the median counts; one where a run takes long
 LONG = 20   # seconds
 
 
-def run_once(command):
-    """Wall seconds and peak memory in MB; of the latter no less than this program's own is seen, as the process begins as its copy."""
-    start = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode != 0:
-        sys.exit("%s: exit code %d" % (" ".join(command[:4]), process.returncode))
-    return time.perf_counter() - start, usage.ru_maxrss / 1024
-
-
 def run(command, before=lambda: None):
+    """Wall seconds and peak memory in MB, of the median run."""
     results = []
     for _ in range(ROUNDS):
         before()
-        results.append(run_once(command))
+        results.append(bench_head.run(command)[::2])
         if results[-1][0] > LONG:
             break
     results.sort()

@@ -95,7 +95,7 @@ void inputs_thin(struct inputs *inputs, int count)
 	if (inputs->count <= count)
 		return;
 	for (int n = 0; n < inputs->count; n++)
-		if (n == kept * (inputs->count - 1) / (count - 1))
+		if (kept < count && n == kept * (inputs->count - 1) / (count > 1 ? count - 1 : 1))
 			inputs->paths[kept++] = inputs->paths[n];
 		else
 			free(inputs->paths[n]);

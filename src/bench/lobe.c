@@ -134,6 +134,22 @@ static void search_grid(struct search *search, struct start *kept)
 	}
 }
 
+/* The shape as it is stored, and the albedos that go with it. */
+static void state_fill(struct lobe_state *out, struct search *search, const double *x, double unit)
+{
+	double shape[LOBE_SHAPE_MAX];
+
+	out->model = search->model;
+	shape_from_free(out->model, x, shape);
+	for (int a = 0; a < out->model->shape_count; a++)
+		shape[a] = out->shape[a] = (float)shape[a];
+	out->error = sqrt(project(search, shape)) * unit;
+	for (int c = 0; c < 3; c++) {
+		out->diffuse[c] = (float)(search->diffuse[c] * unit);
+		out->specular[c] = (float)(search->specular[c] * unit);
+	}
+}
+
 bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective kind, void **state,
                    bp_error *error)
 {
@@ -176,17 +192,7 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 	search.sample = &dense;
 	if ((status = descend(&search, starts[chosen].x, &best, error)))
 		goto out;
-	/* the albedos that go with the shape as it is stored */
-	double shape[LOBE_SHAPE_MAX];
-	shape_from_free(model, starts[chosen].x, shape);
-	for (int a = 0; a < model->shape_count; a++)
-		shape[a] = out->shape[a] = (float)shape[a];
-	out->error = sqrt(project(&search, shape)) * dense.unit;
-	for (int c = 0; c < 3; c++) {
-		out->diffuse[c] = (float)(search.diffuse[c] * dense.unit);
-		out->specular[c] = (float)(search.specular[c] * dense.unit);
-	}
-	out->model = model;
+	state_fill(out, &search, starts[chosen].x, dense.unit);
 	out->dims = lattice->dims;
 	*state = out;
 	out = NULL;

@@ -51,9 +51,9 @@ struct lobe_state {
 };
 
 /*
- * LOBE_COSINE is the objective above. A mirror's peak dominates it: of chrome-steel it leaves 6.8 dB where a black picture has 4.9.
- * LOBE_RELATIVE divides each squared error by (b + 0.001/sr)^2, which is the error of the logarithm to first order. The benchmark has
- * both, and names the better one of each material.
+ * LOBE_COSINE is the objective above. A mirror's peak dominates it: of chrome-steel it leaves 6.8 dB where a black picture has
+ * 4.9. LOBE_RELATIVE divides each squared error by (b + 0.001/sr)^2, which is the error of the logarithm to first order. The
+ * benchmark has both, and names the better one of each material.
  */
 enum lobe_objective { LOBE_COSINE, LOBE_RELATIVE };
 

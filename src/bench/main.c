@@ -24,11 +24,11 @@ static void print_head(FILE *out, const struct run *run, const char *label, int 
 	if (run->truth)
 		fprintf(out, "# figures against: the tables of the same names in %s\n", run->truth);
 	fprintf(out,
-	        "# processes: %d; fit, decode: processor seconds; evaluate: median of %d passes over %d random pairs; cat: "
-	        "wall-clock seconds\n",
+	        "# processes: %d; fit, decode: processor seconds; "
+	        "evaluate: median of %d passes over %d random pairs; cat: wall-clock seconds\n",
 	        workers, REPEATS, PAIRS);
-	fprintf(out, "# evaluated: model = straight from what is stored; table = after decoding the whole, nearest look-up (paper, "
-	             "default: interpolated, as a renderer reads them)\n");
+	fprintf(out, "# evaluated: model = straight from what is stored; "
+	             "table = after decoding the whole, nearest look-up (paper, spectral: interpolated, as a renderer reads them)\n");
 	for (int m = 0; m < METHOD_FITS; m++)
 		if (run->method_on[m])
 			fprintf(out, "# %s: %s%s\n", METHODS[m].name, METHODS[m].baseline->reference,
@@ -98,14 +98,38 @@ static void usage(FILE *out)
 	             "  -j N      processes (1: times are least disturbed)\n");
 }
 
-int main(int argc, char **argv)
+/* Everything, to standard output (NULL) or a file, which is written beside and renamed when whole. False after a complaint. */
+static bool run_and_print(struct run *run, int workers, const char *output, const char *label, int argc, char **argv)
 {
-	static struct run run;
-	const char *output = NULL, *label = NULL, *names = NULL;
 	char temporary[4096];
-	int workers = 1, option, count;
 	struct row *rows;
 	FILE *out = stdout;
+
+	snprintf(temporary, sizeof temporary, "%s.tmp", output ? output : "");
+	if (output && !(out = fopen(temporary, "w"))) {
+		fprintf(stderr, "brdfpack-bench: %s: %s\n", temporary, strerror(errno));
+		return false;
+	}
+	const int count = run_all(run, workers < run->inputs.count ? workers : run->inputs.count, &rows);
+	head_print(out, argc, argv);
+	print_head(out, run, label, workers);
+	print_rows(out, run, rows, count);
+	free(rows);
+	const bool flushed = fflush(out) == 0 && !ferror(out);
+	if ((output && fclose(out) != 0) || !flushed || (output && rename(temporary, output) != 0)) {
+		fprintf(stderr, "brdfpack-bench: %s: %s\n", output ? output : "standard output", strerror(errno));
+		if (output)
+			unlink(temporary);
+		return false;
+	}
+	return true;
+}
+
+int main(int argc, char **argv)
+{
+	static struct run run = {.plans = {.lightings = (1u << LIGHTING_COUNT) - 1, .size = SPHERE_SIZE}};
+	const char *output = NULL, *label = NULL, *names = NULL;
+	int workers = 1, option;
 
 	for (int m = 0; m < METHOD_COUNT; m++)
 		run.method_on[m] = true;
@@ -143,31 +167,14 @@ int main(int argc, char **argv)
 		usage(stderr);
 		return 2;
 	}
-	if (output) { /* written beside, renamed when whole */
-		snprintf(temporary, sizeof temporary, "%s.tmp", output);
-		if (!(out = fopen(temporary, "w"))) {
-			fprintf(stderr, "brdfpack-bench: %s: %s\n", temporary, strerror(errno));
-			return 1;
-		}
-	}
 	if (!(run.pairs = malloc(sizeof *run.pairs))) {
 		fprintf(stderr, "brdfpack-bench: out of memory\n");
 		return 1;
 	}
 	pairs_make(run.pairs);
-	count = run_all(&run, workers < run.inputs.count ? workers : run.inputs.count, &rows);
-	head_print(out, argc, argv);
-	print_head(out, &run, label ? label : argv[optind], workers);
-	print_rows(out, &run, rows, count);
-	if (fflush(out) || ferror(out) || (output && (fclose(out) || rename(temporary, output)))) {
-		fprintf(stderr, "brdfpack-bench: %s: %s\n", output ? output : "standard output", strerror(errno));
-		if (output)
-			unlink(temporary);
-		return 1;
-	}
-	free(rows);
+	bool written = run_and_print(&run, workers, output, label ? label : argv[optind], argc, argv);
 	free(run.pairs);
-	figure_plans_free(&run.plans);
+	comparison_plans_free(&run.plans);
 	inputs_free(&run.inputs);
-	return run.failed;
+	return run.failed || !written;
 }

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "figures.h"
+#include "render/comparison.h"
 
 enum evaluated { EVALUATED_NOTHING, EVALUATED_MODEL, EVALUATED_TABLE };
 
@@ -17,7 +17,7 @@ struct row {
 	double bytes, parameters;
 	double fit_seconds, decode_seconds, evaluate_ns;
 	int evaluated; /* enum evaluated: from what the evaluation was timed */
-	struct figures figures;
+	struct comparison figures;
 };
 
 /* Column names, tab-separated, with newline. */

@@ -31,7 +31,7 @@ static struct row empty_row(int material, int method)
 }
 
 /* One method at the material's budget and effort. */
-static bp_status run_method(struct run *run, const struct bench_material *material, const struct figure_reference *reference,
+static bp_status run_method(struct run *run, const struct bench_material *material, const struct lattice *truth,
                             const struct baseline *method, struct row *row, struct expansion *table, bp_error *error)
 {
 	double seconds[REPEATS];
@@ -65,14 +65,14 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 	status = method->evaluate ? time_model(method, state, run->pairs, REPEATS, &row->evaluate_ns, error)
 	                          : time_table(table, run->pairs, REPEATS, &row->evaluate_ns, error);
 	if (!status)
-		status = figures_measure(reference, table, &row->figures, error);
+		status = comparison_measure(&run->plans, truth, table, &row->figures, NULL, error);
 out:
 	method->free_state(state);
 	return status;
 }
 
 /* A row of a method for every step of its ladder. */
-static void climb(struct run *run, const struct bench_material *material, const struct figure_reference *reference, int at, int m,
+static void climb(struct run *run, const struct bench_material *material, const struct lattice *truth, int at, int m,
                   struct expansion *table)
 {
 	const struct method *method = &METHODS[m];
@@ -87,7 +87,7 @@ static void climb(struct run *run, const struct bench_material *material, const 
 		struct bench_material asked = *material;
 		asked.budget_bytes = (size_t)row.budget;
 		asked.effort = method->efforts ? (int)row.effort : EFFORT_USUAL;
-		bp_status status = run_method(run, &asked, reference, method->baseline, &row, table, &error);
+		bp_status status = run_method(run, &asked, truth, method->baseline, &row, table, &error);
 		if (!status)
 			fwrite(&row, sizeof row, 1, run->rows);
 		else if (status == BP_ERROR_LIMIT || status == BP_ERROR_UNSUPPORTED ||
@@ -144,7 +144,6 @@ static void run_material(struct run *run, int at)
 	char name[256];
 	struct lattice lattice = {0}, truth = {0};
 	struct expansion table = {0};
-	struct figure_reference reference = {0};
 	uint8_t *raw = NULL;
 	size_t raw_bytes = 0;
 	double start = clock_seconds(CLOCK_MONOTONIC), seconds;
@@ -160,29 +159,17 @@ static void run_material(struct run *run, int at)
 		complain(run, name, "reading the truth", &error);
 		goto out;
 	}
-	if (!lattice_dims_equal(run->dims, lattice.dims)) {
-		figure_plans_free(&run->plans);
-		run->plans = (struct figure_plans){{NULL}};
-		run->dims = lattice.dims;
-		if (figure_plans_make(run->dims, &run->plans, &error)) {
-			complain(run, name, "planning the images", &error);
-			run->dims = (struct lattice_dims){0};
-			goto out;
-		}
-	}
-	if (figure_reference_make(&run->plans, run->truth ? &truth : &lattice, &reference, &error) ||
-	    expansion_alloc(lattice.dims, &table, &error)) {
-		complain(run, name, "rendering the reference", &error);
+	if (expansion_alloc(lattice.dims, &table, &error)) {
+		complain(run, name, "decoding", &error);
 		goto out;
 	}
 	run_yardsticks(run, at, name, &lattice);
 	const struct bench_material material = {.name = name, .lattice = &lattice, .raw = raw, .raw_bytes = raw_bytes};
 	for (int m = 0; m < METHOD_FITS; m++)
 		if (run->method_on[m])
-			climb(run, &material, &reference, at, m, &table);
+			climb(run, &material, run->truth ? &truth : &lattice, at, m, &table);
 	fprintf(stderr, "brdfpack-bench: %s: %.1f s\n", name, clock_seconds(CLOCK_MONOTONIC) - start);
 out:
-	figure_reference_free(&reference);
 	expansion_free(&table);
 	lattice_free(&lattice);
 	lattice_free(&truth);

@@ -1,7 +1,7 @@
 /*
  * run.h: one run of the benchmark: every material by every method.
  *
- * For each material: read and time the file, render the reference, then per method and budget (or effort) fit, decode,
+ * For each material: read and time the file, then per method and budget (or effort) fit, decode,
  * evaluate, measure; and the yardsticks: reading the file as cat does, and nearest look-ups in the raw table.
  */
 #ifndef BENCH_RUN_H
@@ -21,11 +21,10 @@ struct run {
 	double budgets[LADDER_MAX], efforts[LADDER_MAX];
 	int budget_count, effort_count;
 	/* the run's own, zero before it */
-	struct figure_plans plans;
-	struct lattice_dims dims; /* of the plans */
-	struct pairs *pairs;      /* the caller's */
-	FILE *rows;               /* binary struct row */
-	bool failed;              /* something was reported on standard error */
+	struct comparison_plans plans; /* with lightings and size set */
+	struct pairs *pairs;           /* the caller's */
+	FILE *rows;                    /* binary struct row */
+	bool failed;                   /* something was reported on standard error */
 };
 
 /*

@@ -28,16 +28,24 @@ struct term {
 	double u[RANK_MAX], v[RANK_MAX], w[RANK_MAX], z[3], size;
 };
 
-/*
- * The best rank-one term of the core by alternating least squares, from the phi_d basis vector that carries most energy.
- * plane[3][h][d] is scratch.
- */
-static void best_term(const struct projection *q, struct term *t, double *plane)
+/* plane[3][h][d]: the core along w. */
+static void plane_take(const struct projection *q, const struct term *t, double *plane)
 {
-	double energy[RANK_MAX] = {0}, previous = 0;
-	size_t rows = 3 * q->h * q->d, most = 0;
+	for (size_t n = 0; n < 3 * q->h * q->d; n++) {
+		const double *row = q->core + n * q->p;
+		plane[n] = 0;
+		for (size_t e = 0; e < q->p; e++)
+			plane[n] += row[e] * t->w[e];
+	}
+}
 
-	for (size_t n = 0; n < rows; n++)
+/* w: the phi_d basis vector that carries most energy; v and z: the strongest row of the plane along it. */
+static void term_start(const struct projection *q, struct term *t, double *plane)
+{
+	double energy[RANK_MAX] = {0}, best = -1;
+	size_t most = 0, at = 0;
+
+	for (size_t n = 0; n < 3 * q->h * q->d; n++)
 		for (size_t e = 0; e < q->p; e++)
 			energy[e] += q->core[n * q->p + e] * q->core[n * q->p + e];
 	for (size_t e = 1; e < q->p; e++)
@@ -45,56 +53,62 @@ static void best_term(const struct projection *q, struct term *t, double *plane)
 			most = e;
 	memset(t, 0, sizeof *t);
 	t->w[most] = 1;
-	for (int sweep = 0; sweep < SWEEPS_MAX; sweep++) {
-		for (size_t n = 0; n < rows; n++) {
-			const double *row = q->core + n * q->p;
+	plane_take(q, t, plane);
+	for (size_t n = 0; n < 3 * q->h; n++) {
+		double sum = 0;
+		for (size_t b = 0; b < q->d; b++)
+			sum += plane[n * q->d + b] * plane[n * q->d + b];
+		if (sum > best) {
+			best = sum;
+			at = n;
+		}
+	}
+	memcpy(t->v, plane + at * q->d, q->d * sizeof *t->v);
+	normalise(t->v, q->d);
+	for (int c = 0; c < 3; c++)
+		t->z[c] = 1 / sqrt(3);
+}
+
+/* u, z and v that fit the plane better, each in its turn. */
+static void plane_sweep(const struct projection *q, struct term *t, const double *plane)
+{
+	double along_v[3][RANK_MAX]; /* [colour][h] */
+
+	for (size_t c = 0; c < 3; c++)
+		for (size_t a = 0; a < q->h; a++) {
 			double sum = 0;
-			for (size_t e = 0; e < q->p; e++)
-				sum += row[e] * t->w[e];
-			plane[n] = sum;
+			for (size_t b = 0; b < q->d; b++)
+				sum += plane[(c * q->h + a) * q->d + b] * t->v[b];
+			along_v[c][a] = sum;
 		}
-		if (!sweep) { /* start u, v, z at the plane's strongest row */
-			double best = -1;
-			size_t at = 0;
-			for (size_t n = 0; n < 3 * q->h; n++) {
-				double sum = 0;
-				for (size_t b = 0; b < q->d; b++)
-					sum += plane[n * q->d + b] * plane[n * q->d + b];
-				if (sum > best) {
-					best = sum;
-					at = n;
-				}
-			}
-			memcpy(t->v, plane + at * q->d, q->d * sizeof *t->v);
-			normalise(t->v, q->d);
-			for (int c = 0; c < 3; c++)
-				t->z[c] = 1 / sqrt(3);
-		}
-		for (int inner = 0; inner < INNER_SWEEPS; inner++) {
-			double along_v[3][RANK_MAX]; /* [colour][h] */
-			for (size_t c = 0; c < 3; c++)
-				for (size_t a = 0; a < q->h; a++) {
-					double sum = 0;
-					for (size_t b = 0; b < q->d; b++)
-						sum += plane[(c * q->h + a) * q->d + b] * t->v[b];
-					along_v[c][a] = sum;
-				}
-			for (size_t a = 0; a < q->h; a++)
-				t->u[a] = along_v[0][a] * t->z[0] + along_v[1][a] * t->z[1] + along_v[2][a] * t->z[2];
-			normalise(t->u, q->h);
-			for (size_t c = 0; c < 3; c++) {
-				t->z[c] = 0;
-				for (size_t a = 0; a < q->h; a++)
-					t->z[c] += along_v[c][a] * t->u[a];
-			}
-			normalise(t->z, 3);
-			memset(t->v, 0, sizeof t->v);
-			for (size_t c = 0; c < 3; c++)
-				for (size_t a = 0; a < q->h; a++)
-					for (size_t b = 0; b < q->d; b++)
-						t->v[b] += t->z[c] * t->u[a] * plane[(c * q->h + a) * q->d + b];
-			normalise(t->v, q->d);
-		}
+	for (size_t a = 0; a < q->h; a++)
+		t->u[a] = along_v[0][a] * t->z[0] + along_v[1][a] * t->z[1] + along_v[2][a] * t->z[2];
+	normalise(t->u, q->h);
+	for (size_t c = 0; c < 3; c++) {
+		t->z[c] = 0;
+		for (size_t a = 0; a < q->h; a++)
+			t->z[c] += along_v[c][a] * t->u[a];
+	}
+	normalise(t->z, 3);
+	memset(t->v, 0, sizeof t->v);
+	for (size_t c = 0; c < 3; c++)
+		for (size_t a = 0; a < q->h; a++)
+			for (size_t b = 0; b < q->d; b++)
+				t->v[b] += t->z[c] * t->u[a] * plane[(c * q->h + a) * q->d + b];
+	normalise(t->v, q->d);
+}
+
+/* The best rank-one term of the core by alternating least squares. plane[3][h][d] is scratch. */
+static void best_term(const struct projection *q, struct term *t, double *plane)
+{
+	double previous = 0;
+
+	term_start(q, t, plane);
+	for (int sweep = 0; sweep < SWEEPS_MAX; sweep++) {
+		if (sweep)
+			plane_take(q, t, plane);
+		for (int inner = 0; inner < INNER_SWEEPS; inner++)
+			plane_sweep(q, t, plane);
 		memset(t->w, 0, sizeof t->w);
 		for (size_t c = 0; c < 3; c++)
 			for (size_t a = 0; a < q->h; a++)

@@ -6,9 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base64.h"
 #include "error.h"
-#include "memory_stream.h"
 #include "font.h"
+#include "memory_stream.h"
+#include "output_file.h"
 
 struct canvas {
 	bool svg;
@@ -160,18 +162,6 @@ void canvas_text(struct canvas *canvas, double x, double y, double height, enum 
 	}
 }
 
-static void base64_write(FILE *out, const uint8_t *bytes, size_t count)
-{
-	static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-	for (size_t n = 0; n < count; n += 3) {
-		uint32_t word = (uint32_t)bytes[n] << 16;
-		word |= n + 1 < count ? (uint32_t)bytes[n + 1] << 8 : 0;
-		word |= n + 2 < count ? bytes[n + 2] : 0;
-		for (size_t d = 0; d < 4; d++)
-			fputc(n + d > count ? '=' : DIGITS[word >> (18 - 6 * d) & 63], out);
-	}
-}
-
 void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t width, uint32_t height, const struct picture *picture)
 {
 	if (canvas->svg) {
@@ -183,8 +173,7 @@ void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t widt
 		}
 		fprintf(canvas->text,
 		        "<image x=\"%u\" y=\"%u\" width=\"%u\" height=\"%u\" preserveAspectRatio=\"none\" "
-		        "style=\"image-rendering:pixelated\" "
-		        "href=\"data:image/png;base64,",
+		        "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,",
 		        x, y, width, height);
 		base64_write(canvas->text, bytes, count);
 		fprintf(canvas->text, "\"/>\n");
@@ -206,5 +195,5 @@ bp_status canvas_write(struct canvas *canvas, const char *path, bp_error *error)
 	fprintf(canvas->text, "</svg>\n");
 	if (fflush(canvas->text) != 0 || canvas->svg_bytes.failed || canvas->failed)
 		return error_memory(error, canvas->svg_bytes.count);
-	return file_write_whole(path, canvas->svg_bytes.bytes, canvas->svg_bytes.count, error);
+	return output_file_write_whole(path, OUTPUT_REPLACE, canvas->svg_bytes.bytes, canvas->svg_bytes.count, error);
 }

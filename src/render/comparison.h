@@ -10,9 +10,6 @@
 #include "metrics.h"
 #include "picture.h"
 
-/* Bit 1 << lighting for each lighting that is wanted. */
-enum { LIGHTINGS_ALL = (1 << LIGHTING_COUNT) - 1 };
-
 struct comparison {
 	struct psnr psnr[LIGHTING_COUNT]; /* of the lightings that were asked for; 0 otherwise */
 	double itp[LIGHTING_COUNT];       /* mean dE ITP, likewise */
@@ -26,7 +23,7 @@ struct comparison {
  * extents change. Zero it before use, then set lightings and size. About 80 MB with all lightings at 160 pixels.
  */
 struct comparison_plans {
-	unsigned lightings;
+	unsigned lightings; /* bit 1 << lighting for each that is wanted */
 	uint32_t size;
 	struct lattice_dims dims;
 	struct sphere_plan *plans[LIGHTING_COUNT];

@@ -178,8 +178,7 @@ static void scale_draw(struct canvas *canvas, double x, double y)
 	enum { STEPS = 90, WIDTH = 18 };
 	char text[16];
 	for (int s = 0; s < STEPS; s++) {
-		double spectral = SPAN - 2 * SPAN * (s + 0.5) / STEPS;
-		canvas_rectangle(canvas, x, y + 2 * s, WIDTH, 2, density_colour(exp2(spectral)));
+		canvas_rectangle(canvas, x, y + 2 * s, WIDTH, 2, density_colour(exp2(SPAN - 2 * SPAN * (s + 0.5) / STEPS)));
 	}
 	frame_draw(canvas, x, y, WIDTH, 2 * STEPS);
 	for (int t = -2; t <= 2; t++) {

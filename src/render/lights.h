@@ -28,6 +28,12 @@ struct light {
 /* Fills lights[LIGHTS_MAX] and returns how many there are. */
 int lights_make(enum lighting lighting, struct light *lights);
 
+/* Bit 1 << lighting of one lighting, or of all for LIGHTING_COUNT. */
+static inline unsigned lightings_of(enum lighting lighting)
+{
+	return lighting < LIGHTING_COUNT ? 1u << lighting : (1u << LIGHTING_COUNT) - 1;
+}
+
 /* "key", "env" or "point". */
 const char *lighting_name(enum lighting lighting);
 

@@ -6,8 +6,8 @@
  *     H sqrt(theta_h/(pi/2))      D theta_d/(pi/2)      P phi_d/pi
  *
  * A stored value stands for its cell's centre, 1/2 beyond its index; phi_d is periodic, the other two are clamped
- * at the first and at the last centre. Where a direction pair looks does not depend on the material: *places* are made once and used
- * for every material.
+ * at the first and at the last centre. Where a direction pair looks does not depend on the material: *places* are made once and
+ * used for every material.
  */
 #ifndef RENDER_LOOKUP_H
 #define RENDER_LOOKUP_H

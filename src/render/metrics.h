@@ -16,7 +16,7 @@
  *     real       10 log10(1 / max(1e-12, mean (a - b)^2))                                   at most 120 dB
  *     eight_bit  10 log10(255^2 / max(1e-6, mean (round(255 a) - round(255 b))^2))       at most 108.13 dB
  *
- * Cells that are invalid in the reference are 0 in both tables (sphere_table_*), so what a coder puts there
+ * Cells that are invalid in the reference are 0 in both tables (lookup.h), so what a coder puts there
  * does not count. A value of the estimate that is not finite counts as 1 - a.
  */
 struct psnr {

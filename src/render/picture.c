@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bytes.h"
 #include "error.h"
 #include "output_file.h"
 
@@ -65,19 +66,6 @@ bp_status picture_compare(const struct sphere_image *reference, const struct sph
 	return BP_OK;
 }
 
-bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp_error *error)
-{
-	struct output_file file;
-	bp_status status = output_file_open(path, OUTPUT_REPLACE, &file, error);
-	if (status != BP_OK)
-		return status;
-	status = output_file_write(&file, bytes, count, error);
-	if (status == BP_OK)
-		return output_file_commit(&file, error);
-	output_file_discard(&file);
-	return status;
-}
-
 /* Behind signature and header of a PNG file: who made it, as a text chunk (length, type, text, CRC32). */
 #define PNG_MARK \
 	"\0\0\0\x11" \
@@ -119,7 +107,7 @@ bp_status picture_write_png(const char *path, const struct picture *picture, bp_
 	bp_status status = picture_encode_png(picture, &bytes, &count, error);
 	if (status != BP_OK)
 		return status;
-	status = file_write_whole(path, bytes, count, error);
+	status = output_file_write_whole(path, OUTPUT_REPLACE, bytes, count, error);
 	free(bytes);
 	return status;
 }
@@ -149,10 +137,9 @@ bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp
 			uint32_t bits;
 			const float value = (float)(factor * (double)image->rgb[row * y + n]);
 			memcpy(&bits, &value, 4);
-			for (int b = 0; b < 4; b++)
-				to[b] = (uint8_t)(bits >> (8 * b));
+			store_u32(to, bits);
 		}
-	bp_status status = file_write_whole(path, memory, bytes, error);
+	bp_status status = output_file_write_whole(path, OUTPUT_REPLACE, memory, bytes, error);
 	free(memory);
 	return status;
 }

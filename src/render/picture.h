@@ -37,10 +37,10 @@ bp_status picture_encode_png(const struct picture *picture, uint8_t **bytes, siz
 bool picture_is_ours(const uint8_t *head, size_t count);
 
 /*
- * Files. An older file is replaced whole or not at all (output_file.h). PFM: RGB float32 little-endian, bottom row first; values are in 1/sr, the scale field -1,
- * but for images of extreme magnitude: those are in units of their own, which the scale field tells (negative).
+ * Files. An older file is replaced whole or not at all (output_file.h). PFM: RGB float32 little-endian, bottom row first; values
+ * are in 1/sr, the scale field -1, but for images of extreme magnitude: those are in units of their own, which the scale field
+ * tells (negative).
  */
-bp_status file_write_whole(const char *path, const void *bytes, size_t count, bp_error *error);
 bp_status picture_write_png(const char *path, const struct picture *picture, bp_error *error);
 bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp_error *error);
 

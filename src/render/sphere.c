@@ -89,8 +89,6 @@ static bool plan_grow(struct sphere_plan *plan)
 static bool plan_row(struct sphere_plan *plan, const struct angle_tables *angles, const struct light *light, uint32_t y)
 {
 	bool open = false;
-	if (!plan_grow(plan))
-		return false;
 	for (uint32_t x = 0; x < plan->size; x++) {
 		double normal[3], to[3];
 		bool lit = pixel_normal(plan->size, x, y, normal);
@@ -100,7 +98,6 @@ static bool plan_row(struct sphere_plan *plan, const struct angle_tables *angles
 			continue;
 		}
 		if (!open) {
-			/* a row meets the lit region in few stretches, but growth is cheap to make sure of */
 			if (!plan_grow(plan))
 				return false;
 			plan->runs[plan->run_count++] = (struct run){.pixel = x + plan->size * y};
@@ -112,20 +109,26 @@ static bool plan_row(struct sphere_plan *plan, const struct angle_tables *angles
 	return true;
 }
 
+static bp_status size_check(uint32_t size, bool rows_inside, bp_error *error)
+{
+	if (size >= 1 && size <= SPHERE_SIZE_MAX && rows_inside)
+		return BP_OK;
+	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an image of %u pixels: the size must be 1 to %d", size,
+	                 SPHERE_SIZE_MAX);
+}
+
 bp_status sphere_plan_make(enum lighting lighting, uint32_t size, uint32_t row_first, uint32_t row_count,
                            struct lattice_dims dims, struct sphere_plan **out, bp_error *error)
 {
-	if (size < 1 || size > SPHERE_SIZE_MAX || row_first > size || row_count > size - row_first)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an image of %u pixels: the size must be 1 to %d", size,
-		                 SPHERE_SIZE_MAX);
+	if (size_check(size, row_first <= size && row_count <= size - row_first, error))
+		return BP_ERROR_ARGUMENT;
 	struct light lights[LIGHTS_MAX];
 	int light_count = lights_make(lighting, lights);
 	struct sphere_plan *plan = calloc(1, sizeof *plan);
 	struct angle_tables *angles = angle_tables_make();
 	bool ok = plan && angles;
-	if (ok) {
+	if (ok)
 		*plan = (struct sphere_plan){.size = size, .row_first = row_first, .row_count = row_count, .dims = dims};
-	}
 	/* light by light: neighbouring pixels under one light read neighbouring cells */
 	for (int n = 0; ok && n < light_count; n++)
 		for (uint32_t y = row_first; ok && y < row_first + row_count; y++)
@@ -151,8 +154,6 @@ void sphere_plan_free(struct sphere_plan *plan)
 		free(plan);
 	}
 }
-
-size_t sphere_plan_places(const struct sphere_plan *plan) { return plan->place_count; }
 
 void sphere_plan_render(const struct sphere_plan *plan, const struct lookup_table *const *tables, int count,
                         struct sphere_image *const *images)
@@ -196,9 +197,8 @@ bp_status sphere_render(enum lighting lighting, const struct lookup_table *const
 
 bp_status sphere_image_alloc(uint32_t size, struct sphere_image *out, bp_error *error)
 {
-	if (size < 1 || size > SPHERE_SIZE_MAX)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an image of %u pixels: the size must be 1 to %d", size,
-		                 SPHERE_SIZE_MAX);
+	if (size_check(size, true, error))
+		return BP_ERROR_ARGUMENT;
 	struct sphere_image image = {.size = size, .unit = 1};
 	size_t pixels = (size_t)size * size;
 	image.rgb = calloc(3 * pixels, sizeof *image.rgb);

@@ -40,9 +40,6 @@ bp_status sphere_plan_make(enum lighting lighting, uint32_t size, uint32_t row_f
                            struct lattice_dims dims, struct sphere_plan **out, bp_error *error);
 void sphere_plan_free(struct sphere_plan *plan); /* NULL is allowed */
 
-/* Places in the plan (pixels times lights that reach them). */
-size_t sphere_plan_places(const struct sphere_plan *plan);
-
 /*
  * Fills the plan's rows of one image per table; images[t] was allocated with the plan's size and takes over the
  * table's unit. All tables have the plan's dims.

@@ -11,8 +11,8 @@ struct cores_limits {
 };
 
 /*
- * The least of a process's groups and of all groups around them, versions 1 and 2 (Linux, Documentation/admin-guide/cgroup-v2.rst):
- * root is where they are mounted, groups the process's list (/proc/self/cgroup).
+ * The least of a process's groups and of all groups around them, versions 1 and 2 (Linux,
+ * Documentation/admin-guide/cgroup-v2.rst): root is where they are mounted, groups the process's list (/proc/self/cgroup).
  */
 struct cores_limits cores_limits_read(const char *root, const char *groups);
 

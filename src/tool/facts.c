@@ -106,7 +106,7 @@ const char *origin_text(enum origin_kind kind)
 	}
 }
 
-const char *origin_word(enum origin_kind kind)
+static const char *origin_word(enum origin_kind kind)
 {
 	static const char *const WORDS[] = {
 		[ORIGIN_RGL_RGB] = "rgl-rgb", [ORIGIN_RGL_SPECTRA] = "rgl-spectra", [ORIGIN_TWO_HALVES] = "merl-two-halves"};

@@ -22,9 +22,8 @@ const struct fidelity *head_fidelity(const struct record_head *head);
 /* Members "errors", "parameters", "left_out" of the object that is open. */
 void facts_brief(struct json *json, const struct record_head *head);
 
-/* What kind of file a source was, for people: "RGL tensor file, red, green and blue"; for programs: "rgl-rgb". NULL for a MERL table. */
+/* What kind of file a source was, for people: "RGL tensor file, red, green and blue". NULL for a MERL table. */
 const char *origin_text(enum origin_kind kind);
-const char *origin_word(enum origin_kind kind);
 
 /* Everything: also source, lattice, options, layers and sections. */
 void facts_full(struct json *json, const struct record_head *head, const struct origin *origin);

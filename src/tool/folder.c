@@ -23,7 +23,8 @@ static int folder_make_one(const char *path)
 	return stat(path, &facts) == 0 && S_ISDIR(facts.st_mode) ? 0 : ENOTDIR;
 }
 
-bool folder_create(const char *path)
+/* The folder and those above it; true when it is there afterwards. Says why not. */
+static bool folder_create(const char *path)
 {
 	char *part = strdup(path);
 	int reason = !part ? ENOMEM : !*part ? ENOENT : 0;

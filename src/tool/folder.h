@@ -9,9 +9,6 @@
 
 #include "output_file.h"
 
-/* Creates the folder and those above it; true when it is there afterwards. Says why not. */
-bool folder_create(const char *path);
-
 /*
  * Files that a command writes into a folder under names that it does not choose. Names that exist are refused, all of them named
  * and before anything is written, unless their files hold just what would be written: these are left as they are. With `force`

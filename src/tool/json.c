@@ -60,12 +60,11 @@ static void level_open(struct json *json, const char *key, char open, char close
 	json->level[json->depth++].filled = false;
 }
 
-struct json json_begin(FILE *out, bool indent) { return (struct json){.out = out, .indent = indent}; }
-
-void json_finish(struct json *json)
+struct json json_begin(FILE *out, bool indent)
 {
-	assert(json->depth == 0);
-	putc('\n', json->out);
+	struct json json = {.out = out, .indent = indent};
+	level_open(&json, NULL, '{', '}');
+	return json;
 }
 
 void json_object(struct json *json, const char *key) { level_open(json, key, '{', '}'); }
@@ -79,6 +78,13 @@ void json_close(struct json *json)
 	if (json->level[json->depth].filled)
 		line_indent(json);
 	putc(json->level[json->depth].close, json->out);
+}
+
+void json_finish(struct json *json)
+{
+	json_close(json);
+	assert(json->depth == 0);
+	putc('\n', json->out);
 }
 
 void json_string(struct json *json, const char *key, const char *text)

@@ -25,10 +25,11 @@ struct json {
 	} level[JSON_DEPTH_MAX];
 };
 
+/* An object, whose members follow. */
 struct json json_begin(FILE *out, bool indent);
-void json_finish(struct json *json); /* a newline; every level must be closed */
+void json_finish(struct json *json); /* closes it, and ends the line; what was opened within is closed by then */
 
-/* `key` is NULL for members of arrays and for the outermost value. */
+/* `key` is NULL for members of arrays. */
 void json_object(struct json *json, const char *key);
 void json_array(struct json *json, const char *key);
 void json_close(struct json *json); /* the innermost object or array */

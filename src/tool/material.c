@@ -9,6 +9,15 @@
 #include "report.h"
 #include "selection.h"
 
+bp_status material_decode(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
+                          struct model **model, struct expansion *table, bp_error *error)
+{
+	bp_status status = archive_entry_head(archive, entry, head, error);
+	if (!status)
+		status = archive_entry_load(archive, entry, head, 0, model, error);
+	return status ? status : model_expand(*model, 0, table, error);
+}
+
 static int archived_load(struct material *material, char *name)
 {
 	struct selection selection;
@@ -21,9 +30,7 @@ static int archived_load(struct material *material, char *name)
 	if (selection.incomplete)
 		goto out; /* reported */
 	if (selection_entry(&selection, 0, &entry, &error) ||
-	    archive_entry_head(selection.archive, &entry, &material->head, &error) ||
-	    archive_entry_load(selection.archive, &entry, &material->head, 0, &material->model, &error) ||
-	    model_expand(material->model, 0, &material->table, &error)) {
+	    material_decode(selection.archive, &entry, &material->head, &material->model, &material->table, &error)) {
 		report_error(material->path, name, &error);
 		goto out;
 	}

@@ -19,6 +19,13 @@ struct material {
 };
 
 /*
+ * A record's head, its model of all layers, and that one's table: *model and *table are the caller's to free, also after an
+ * error.
+ */
+bp_status material_decode(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
+                          struct model **model, struct expansion *table, bp_error *error);
+
+/*
  * Opens operands[0]. An archive needs the name of a material in operands[1]; for a MERL file (of any legal
  * lattice) the name may be left out, and is only what the material is called. Reports what goes wrong, with the
  * nearest spelling of a name that is not there. Returns an exit code; after EXIT_OK the caller frees *material.

@@ -6,7 +6,9 @@
 #include "name.h"
 #include "error.h"
 
-bool material_name_form(const char *written, unsigned form, char name[BP_NAME_BYTES_MAX + 1])
+/* The forms from the most literal on; false where one is no legal name. Several may be the same. */
+enum { FORMS = 6 };
+static bool name_form(const char *written, unsigned form, char name[BP_NAME_BYTES_MAX + 1])
 {
 	static const char *const SEPARATORS[] = {"", "/", "/\\"};
 	const char *start = written;
@@ -21,13 +23,13 @@ bool material_name_form(const char *written, unsigned form, char name[BP_NAME_BY
 	return true;
 }
 
-bool material_name_bare(const char *written, char name[BP_NAME_BYTES_MAX + 1]) { return material_name_form(written, 3, name); }
+bool material_name_bare(const char *written, char name[BP_NAME_BYTES_MAX + 1]) { return name_form(written, 3, name); }
 
 bp_status material_name_find(const bp_archive *archive, const char *written, uint64_t *index, bp_error *error)
 {
 	char name[BP_NAME_BYTES_MAX + 1], before[BP_NAME_BYTES_MAX + 1] = "";
-	for (unsigned form = 0; form < MATERIAL_NAME_FORMS; form++) {
-		if (!material_name_form(written, form, name) || !strcmp(name, before))
+	for (unsigned form = 0; form < FORMS; form++) {
+		if (!name_form(written, form, name) || !strcmp(name, before))
 			continue;
 		const bp_status status = bp_archive_find(archive, name, index, error);
 		if (status != BP_ERROR_NOT_FOUND)

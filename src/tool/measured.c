@@ -25,17 +25,41 @@ static void notice_show(void *user, enum source_notice kind, const char *path, c
 	report_warning(path, NULL, "%s", reason);
 }
 
-bp_status measured_find(const char *folder, const char *const *names, size_t count, struct source_list *out, bp_error *error)
+bp_status measured_set_read(struct selection *selection, struct measured_set *out, bp_error *error)
 {
-	struct wanted wanted = {malloc((count + 1) * sizeof *wanted.name), count};
+	const size_t count = (size_t)selection->count;
+	bp_status status = BP_OK;
+	*out = (struct measured_set){.item = calloc(count + 1, sizeof *out->item), .name = calloc(count + 1, sizeof *out->name)};
+	if (!out->item || !out->name)
+		return error_memory(error, count * sizeof *out->item);
+	while (out->count < count && !(status = selection_entry(selection, out->count, &out->item[out->count].entry, error))) {
+		out->name[out->count] = out->item[out->count].entry.name;
+		out->count++;
+	}
+	return status;
+}
+
+bp_status measured_set_find(struct measured_set *set, const char *folder, bp_error *error)
+{
+	struct wanted wanted = {malloc((set->count + 1) * sizeof *wanted.name), set->count};
 	const struct source_options options = {.notice = notice_show, .wanted = is_wanted, .user = &wanted};
 	if (!wanted.name)
-		return error_memory(error, count * sizeof *wanted.name);
-	memcpy(wanted.name, names, count * sizeof *wanted.name);
-	qsort(wanted.name, count, sizeof *wanted.name, ascending);
-	const bp_status status = source_scan(&folder, 1, &options, out, error);
-	for (size_t s = 0; status == BP_OK && s < out->stream_count; s++)
-		report_warning(out->streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
+		return error_memory(error, set->count * sizeof *wanted.name);
+	memcpy(wanted.name, set->name, set->count * sizeof *wanted.name);
+	qsort(wanted.name, set->count, sizeof *wanted.name, ascending);
+	const bp_status status = source_scan(&folder, 1, &options, &set->sources, error);
 	free(wanted.name);
+	for (size_t s = 0; status == BP_OK && s < set->sources.stream_count; s++)
+		report_warning(set->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
+	for (size_t n = 0; status == BP_OK && n < set->count; n++)
+		set->item[n].source = source_list_find(&set->sources, set->name[n]);
 	return status;
+}
+
+void measured_set_free(struct measured_set *set)
+{
+	source_list_free(&set->sources);
+	free(set->item);
+	free(set->name);
+	*set = (struct measured_set){0};
 }

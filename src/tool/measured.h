@@ -1,15 +1,33 @@
 /*
- * measured.h: the measured files that belong to an archive's materials, by their names.
+ * measured.h: the materials of an archive beside their measured files, which are found by their names.
  */
 #ifndef TOOL_MEASURED_H
 #define TOOL_MEASURED_H
 
 #include "merl/source.h"
+#include "selection.h"
+
+struct measured_item {
+	struct index_entry entry;
+	const struct source_item *source; /* its measured file; NULL: there is none, or none was sought */
+};
+
+struct measured_set {
+	struct measured_item *item;
+	const char **name; /* the items' */
+	size_t count;
+	struct source_list sources;
+};
 
 /*
- * Searches a folder (or zip) for files of these names; the caller looks them up by source_list_find and frees the list. What is passed
- * over has been said.
+ * The selected materials. Where the index fails *error says why, and the set has those before. A set of zeros, or that failed, is
+ * freed too.
  */
-bp_status measured_find(const char *folder, const char *const *names, size_t count, struct source_list *out, bp_error *error);
+bp_status measured_set_read(struct selection *selection, struct measured_set *out, bp_error *error);
+
+/* Searches a folder (or zip) for their files. What is passed over has been said. */
+bp_status measured_set_find(struct measured_set *set, const char *folder, bp_error *error);
+
+void measured_set_free(struct measured_set *set);
 
 #endif

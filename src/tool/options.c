@@ -7,13 +7,14 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <inttypes.h>
+#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_HELP = 255, NAMES_MAX = 32 };
+enum { RULES_MAX = 32, LONG = 256 }; /* a rule's number in getopt's words: LONG and its place */
+enum { ENDED = -1, HELPED = -2, WRONG = -3 };
 
 /* Behind "--" a '-' is a name like any other: of a material, it may be. */
 static bool operands_check(const struct command *command, int argc, char **argv)
@@ -29,39 +30,33 @@ static bool operands_check(const struct command *command, int argc, char **argv)
 	return true;
 }
 
-int options_next(const struct command *command, int argc, char **argv, const char *letters, const struct option *names)
+/* The next option's letter or number; ENDED, HELPED after the help, WRONG after a message. */
+static int option_next(const struct command *command, int argc, char **argv, const char *letters, const struct option *names)
 {
-	char all_letters[64];
-	struct option all_names[NAMES_MAX + 2] = {{"help", no_argument, NULL, OPTION_HELP}};
-
-	snprintf(all_letters, sizeof all_letters, ":h%s", letters); /* ':': a missing argument is told apart */
-	for (int i = 0; i < NAMES_MAX && names[i].name; i++)
-		all_names[i + 1] = names[i];
 	opterr = 0;
 	const char *word = optind < argc ? argv[optind] : ""; /* for messages; permuting moves only operands before it */
 	int index = -1;
-	int option = getopt_long(argc, argv, all_letters, all_names, &index);
+	int option = getopt_long(argc, argv, letters, names, &index);
 	if (optind > 0 && optind <= argc && option != -1)
 		word = argv[optind - 1];
 	if (index >= 0 && option != '?' && option != ':') {
 		/* getopt takes any beginning of a name that is no other's: a script that relies on one breaks when an option is added. */
-		const char *written = optarg && optarg == word ? argv[optind - 2] : word, *whole = all_names[index].name;
+		const char *written = optarg && optarg == word ? argv[optind - 2] : word, *whole = names[index].name;
 		if (strcspn(written + 2, "=") != strlen(whole)) {
 			report_usage(command, "unknown option '%.*s' (did you mean '--%s'?)", (int)strcspn(written, "="), written, whole);
-			return OPTIONS_WRONG;
+			return WRONG;
 		}
 	}
 	if (option >= 0 && option != '?' && option != ':' && optarg && !strcmp(optarg, "-")) {
 		report_usage(command,
 		             "'-' after '%s%s': standard input and output cannot be had, give a file's name ('./-' is a file called so)",
-		             index >= 0 ? "--" : "", index >= 0 ? all_names[index].name : (const char[]){'-', (char)option, '\0'});
-		return OPTIONS_WRONG;
+		             index >= 0 ? "--" : "", index >= 0 ? names[index].name : (const char[]){'-', (char)option, '\0'});
+		return WRONG;
 	}
 	switch (option) {
-	case -1: return operands_check(command, argc, argv) ? OPTIONS_END : OPTIONS_WRONG;
-	case OPTION_HELP:
-	case 'h': usage_print(stdout, command->usage); return OPTIONS_HELPED;
-	case ':': report_usage(command, "option '%s' needs a value", word); return OPTIONS_WRONG;
+	case -1: return operands_check(command, argc, argv) ? ENDED : WRONG;
+	case 'h': usage_print(stdout, command->usage); return HELPED;
+	case ':': report_usage(command, "option '%s' needs a value", word); return WRONG;
 	case '?':
 		if (!strncmp(word, "--", 2) && strchr(word, '=') && optopt)
 			report_usage(command, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
@@ -69,16 +64,52 @@ int options_next(const struct command *command, int argc, char **argv, const cha
 			report_usage(command, "unknown option '-%c'", optopt);
 		else
 			report_usage(command, "unknown option '%s'", word);
-		return OPTIONS_WRONG;
+		return WRONG;
 	default: return option;
 	}
 }
 
-int options_exit_code(int option) { return option == OPTIONS_HELPED ? EXIT_OK : EXIT_USAGE; }
-
-static bool range_refuse(const struct command *command, const char *option, const char *text, int64_t least, int64_t most)
+int options_read(const struct command *command, int argc, char **argv, const struct option_rule *rules)
 {
-	report_usage(command, "%s: '%s' is not a whole number from %" PRId64 " to %" PRId64, option, text, least, most);
+	char letters[3 + 2 * RULES_MAX] = ":h"; /* ':': a missing argument is told apart */
+	struct option names[RULES_MAX + 2] = {{"help", no_argument, NULL, 'h'}};
+	int option;
+
+	for (int n = 0; n < RULES_MAX && rules[n].name; n++) {
+		const bool takes = rules[n].take != option_flag;
+		names[n + 1] = (struct option){rules[n].name, takes ? required_argument : no_argument, NULL, LONG + n};
+		if (rules[n].letter)
+			strcat(letters, (const char[]){rules[n].letter, takes ? ':' : '\0', '\0'});
+	}
+	while ((option = option_next(command, argc, argv, letters, names)) >= 0) {
+		const struct option_rule *rule = rules;
+		while (option >= LONG ? rule != &rules[option - LONG] : rule->letter != option)
+			rule++;
+		if (!rule->take(command, rule, optarg))
+			return EXIT_USAGE;
+	}
+	return option == ENDED ? OPTIONS_END : option == HELPED ? EXIT_OK : EXIT_USAGE;
+}
+
+bool option_flag(const struct command *command, const struct option_rule *rule, const char *text)
+{
+	(void)command, (void)text;
+	*(bool *)rule->to = true;
+	return true;
+}
+
+bool option_text(const struct command *command, const struct option_rule *rule, const char *text)
+{
+	(void)command;
+	*(const char **)rule->to = text;
+	return true;
+}
+
+static bool range_refuse(const struct command *command, const struct option_rule *rule, const char *text)
+{
+	const char letter[] = {'-', rule->letter, '\0'};
+	report_usage(command, "%s%s: '%s' is not a whole number from %.0f to %.0f", rule->letter ? letter : "--",
+	             rule->letter ? "" : rule->name, text, rule->least, rule->most);
 	return false;
 }
 
@@ -95,73 +126,68 @@ static bool digits_parse(const char *text, int64_t *out, const char **rest)
 	return errno == 0;
 }
 
-bool option_integer(const struct command *command, const char *option, const char *text, int64_t least, int64_t most,
-                    int64_t *out)
+bool option_integer(const struct command *command, const struct option_rule *rule, const char *text)
 {
 	int64_t value;
 	const char *rest;
-	if (!digits_parse(text, &value, &rest) || *rest || value < least || value > most)
-		return range_refuse(command, option, text, least, most);
-	*out = value;
+	if (!digits_parse(text, &value, &rest) || *rest || (double)value < rule->least || (double)value > rule->most)
+		return range_refuse(command, rule, text);
+	*(int64_t *)rule->to = value;
 	return true;
 }
 
-bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most, int64_t *out)
+bool option_bytes(const struct command *command, const struct option_rule *rule, const char *text)
 {
 	static const struct {
 		const char *suffix;
 		int64_t factor;
 	} units[] = {{"", 1},      {"B", 1},      {"k", 1000},    {"kB", 1000},    {"K", 1000},     {"KB", 1000},
 	             {"Ki", 1024}, {"KiB", 1024}, {"M", 1000000}, {"MB", 1000000}, {"Mi", 1048576}, {"MiB", 1048576}};
-	int64_t value;
+	int64_t value, bytes;
 	const char *rest;
-	if (!digits_parse(text, &value, &rest))
-		return range_refuse(command, option, text, least, most);
-	for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
-		int64_t bytes;
-		if (strcmp(rest, units[i].suffix) != 0)
-			continue;
-		if (__builtin_mul_overflow(value, units[i].factor, &bytes) || bytes < least || bytes > most)
-			break;
-		*out = bytes;
-		return true;
-	}
-	return range_refuse(command, option, text, least, most);
+	for (size_t i = 0; digits_parse(text, &value, &rest) && i < sizeof units / sizeof units[0]; i++)
+		if (!strcmp(rest, units[i].suffix) && !__builtin_mul_overflow(value, units[i].factor, &bytes) &&
+		    (double)bytes >= rule->least && (double)bytes <= rule->most) {
+			*(int64_t *)rule->to = bytes;
+			return true;
+		}
+	return range_refuse(command, rule, text);
 }
 
-bool option_number(const struct command *command, const char *option, const char *text, double least, double most, double *out)
+bool option_number(const struct command *command, const struct option_rule *rule, const char *text)
 {
 	char *end = NULL;
 	bool starts_well = isdigit((unsigned char)text[0]) || text[0] == '.';
 	double value = starts_well ? strtod(text, &end) : NAN;
-	if (!starts_well || *end || !(value >= least && value <= most)) {
-		report_usage(command, "%s: '%s' is not a number from %g to %g", option, text, least, most);
+	if (!starts_well || *end || !(value >= rule->least && value <= rule->most)) {
+		report_usage(command, "--%s: '%s' is not a number from %g to %g", rule->name, text, rule->least, rule->most);
 		return false;
 	}
-	*out = value;
+	*(double *)rule->to = value;
 	return true;
 }
 
-bool option_jobs(const struct command *command, const char *text, unsigned *workers)
+bool option_jobs(const struct command *command, const struct option_rule *rule, const char *text)
 {
 	int64_t count;
-	if (!option_integer(command, "-j", text, 1, WORKERS_MAX, &count))
+	const struct option_rule whole = {rule->name, rule->letter, option_integer, &count, 1, WORKERS_MAX};
+	if (!option_integer(command, &whole, text))
 		return false;
-	*workers = (unsigned)count;
+	*(unsigned *)rule->to = (unsigned)count;
 	return true;
 }
 
-bool option_light(const struct command *command, const char *text, enum lighting *lighting)
+bool option_light(const struct command *command, const struct option_rule *rule, const char *text)
 {
-	if (lighting_find(text, lighting))
+	if (lighting_find(text, rule->to))
 		return true;
 	report_usage(command, "--light: '%s' is none of key, env and point", text);
 	return false;
 }
 
-bool option_profile(const struct command *command, const char *text, enum profile *profile)
+bool option_profile(const struct command *command, const struct option_rule *rule, const char *text)
 {
-	if (profile_parse(text, profile))
+	if (profile_parse(text, rule->to))
 		return true;
 	report_usage(command, "--profile: '%s' is neither spectral nor paper", text);
 	return false;

@@ -2,11 +2,10 @@
  * options.h: reading a command line the same way in every command: getopt_long, own messages,
  * strict numbers.
  *
- *     int option;
- *     while ((option = options_next(self, argc, argv, "o:q", long_options)) >= 0)
- *             switch (option) { ... }
- *     if (option != OPTIONS_END)
- *             return options_exit_code(option);
+ *     const struct option_rule rules[] = {{"output", 'o', option_text, .to = &output}, {"quiet", 'q', option_flag, .to = &quiet}, {0}};
+ *     int code = options_read(self, argc, argv, rules);
+ *     if (code != OPTIONS_END)
+ *             return code;
  */
 #ifndef TOOL_OPTIONS_H
 #define TOOL_OPTIONS_H
@@ -19,33 +18,35 @@
 #include "model/fit.h"
 #include "render/lights.h"
 
-enum { OPTIONS_END = -1, OPTIONS_HELPED = -2, OPTIONS_WRONG = -3 };
+struct option_rule;
 
-/* Long options without a letter get values from here on. */
-enum { OPTION_LONG = 256 };
+/* Takes what was written behind the option to rule->to; false after a usage message. */
+typedef bool option_take_fn(const struct command *command, const struct option_rule *rule, const char *text);
+
+/* One option of a command; --help and -h need none. */
+struct option_rule {
+	const char *name; /* without the "--"; NULL ends a list of them */
+	char letter;      /* 0: it has none */
+	option_take_fn *take;
+	void *to;           /* what it fills; as it is where the option is not given */
+	double least, most; /* of a number; whole ones below 2^53 */
+};
+
+option_take_fn option_flag;    /* bool: true; the only one that has no value */
+option_take_fn option_text;    /* const char *: within argv */
+option_take_fn option_integer; /* int64_t; the whole text must be a number in [least, most] */
+option_take_fn option_bytes;   /* int64_t; may end in k, M (1000) or Ki, Mi (1024), with or without a B */
+option_take_fn option_number;  /* double */
+option_take_fn option_jobs;    /* unsigned, 1 to WORKERS_MAX */
+option_take_fn option_light;   /* enum lighting */
+option_take_fn option_profile; /* enum profile */
 
 /*
- * The next option's letter or value; OPTIONS_END after the last (operands start at argv[optind]);
- * OPTIONS_HELPED when --help or -h was given and has been printed; OPTIONS_WRONG after a message.
+ * Reads all options. OPTIONS_END: operands start at argv[optind]. Else an exit code: EXIT_OK after --help, EXIT_USAGE after a message.
  * A '-' for a file is refused: archives and measured files are read and written where one can seek.
- * `letters` without a leading ':' or '+'; --help need not be listed.
  */
-int options_next(const struct command *command, int argc, char **argv, const char *letters, const struct option *names);
-int options_exit_code(int option);
-
-/*
- * The whole text must be a number in [least, most]; otherwise a usage message names the option and
- * the range, and false is returned. Bytes may end in k, M (1000) or Ki, Mi (1024), with or without a B.
- */
-bool option_integer(const struct command *command, const char *option, const char *text, int64_t least, int64_t most,
-                    int64_t *out);
-bool option_bytes(const struct command *command, const char *option, const char *text, int64_t least, int64_t most, int64_t *out);
-bool option_number(const struct command *command, const char *option, const char *text, double least, double most, double *out);
-
-/* The values of -j, --light and --profile; otherwise a usage message and false. */
-bool option_jobs(const struct command *command, const char *text, unsigned *workers);
-bool option_light(const struct command *command, const char *text, enum lighting *lighting);
-bool option_profile(const struct command *command, const char *text, enum profile *profile);
+enum { OPTIONS_END = -1 };
+int options_read(const struct command *command, int argc, char **argv, const struct option_rule *rules);
 
 /* Whether -o named a file; otherwise a usage message with `example` and false. */
 bool option_output(const struct command *command, const char *output, const char *example);

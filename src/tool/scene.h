@@ -2,8 +2,8 @@
  * scene.h: which materials a scene file speaks of.
  *
  * pbrt, Mitsuba XML, USD ASCII and JSON all write names, and paths of measured files, between quotes. Any text between two quotes
- * of one kind (" or ', and USD's @), on one line, is a word; what the words mean is not looked at. A word counts as it stands, and
- * as it reads with JSON's backslashes, XML's &references; or a URI's %XX undone.
+ * of one kind (" or ', and USD's @), on one line, is a word; what the words mean is not looked at. A word counts as it stands,
+ * and as it reads with JSON's backslashes, XML's &references; or a URI's %XX undone.
  */
 #ifndef TOOL_SCENE_H
 #define TOOL_SCENE_H

@@ -28,10 +28,11 @@ void selection_missing_report(const struct selection *selection, const char *wri
 		name_guess_offer(&guess, entry.name);
 	}
 	const char *best = name_guess_best(&guess);
-	const char *after = !best                            ? "; `brdfpack list` shows what is there"
-	                    : !normal_form_equal(name, best) ? "'?"
-	                                                     : "'? It is the same text in another Unicode form (letters and accents "
-	                                                       "apart, or composed): copy it from `brdfpack list`";
+	const char *after = !best ? "; `brdfpack list` shows what is there"
+	                    : !normal_form_equal(name, best)
+	                        ? "'?"
+	                        : "'? It is the same text in another Unicode form "
+	                          "(letters and accents apart, or composed): copy it from `brdfpack list`";
 	snprintf(error.message, sizeof error.message, "there is no such material%s%s%s", best ? "; did you mean '" : "",
 	         best ? best : "", after);
 	report_error(selection->path, written, &error);

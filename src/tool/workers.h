@@ -72,7 +72,8 @@ void workers_stop(struct workers *workers);
 
 /*
  * All of the above for jobs that are known before: job n is names[n], or nothing where that is NULL, until all have a result or a
- * signal comes (interrupt.h, which is installed here). At most options->count processes, and no more than jobs; wake_fd is set here.
+ * signal comes (interrupt.h, which is installed here). At most options->count processes, and no more than jobs; wake_fd is set
+ * here.
  */
 bp_status workers_run(const struct workers_options *options, const char *const *names, size_t count, bp_error *error);
 

@@ -41,8 +41,6 @@ void viewer_archive_close(struct bp_archive *archive) { bp_archive_close(archive
 
 double viewer_archive_count(const struct bp_archive *archive) { return (double)bp_archive_count(archive); }
 
-double viewer_archive_read_bytes(const struct bp_archive *archive) { return (double)bp_archive_bytes_read(archive); }
-
 static int first_only(void *user, const bp_problem *problem)
 {
 	(void)user, (void)problem;

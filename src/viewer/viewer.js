@@ -88,12 +88,12 @@ class Viewer {
 				if (turn !== this.turns[slot]) return preview.free();
 				this.put(slot, { archive, index, info, layers: 1, material: preview });
 				this.previewed = performance.now() - started;
-				await this.painted();
+				await this.draw();
 			}
 			const material = await archive.load(index, info, layers, false);
 			if (turn !== this.turns[slot]) return material.free(); // another click came
 			this.put(slot, { archive, index, info, layers, material });
-			await this.painted();
+			await this.draw();
 			this.read([0, 0.25]); // something to look at before the pointer comes
 			this.say(this.notice || "");
 			this.cost();
@@ -130,7 +130,7 @@ class Viewer {
 			if (merl) {
 				const material = this.reader.measured(new Uint8Array(await file.arrayBuffer()));
 				this.put(slot, { archive: null, index: -1, info: { name: file.name, layers: [] }, layers: 0, material });
-				await this.painted();
+				await this.draw();
 				this.say(`${file.name} is shown; it stayed on this machine.`);
 				return;
 			}
@@ -157,9 +157,6 @@ class Viewer {
 		this.dirty = true;
 		if (!this.drawn) this.drawn = new Promise((resolve) => requestAnimationFrame(() => this.frame(resolve)));
 		return this.drawn;
-	}
-	painted() {
-		return this.draw();
 	}
 	frame(resolve) {
 		const { drawing } = this;

@@ -4,6 +4,7 @@
 #include "error.h"
 #include "build_inputs.h"
 #include "build_work.h"
+#include "memory.h"
 #include "outcomes.h"
 #include "tool/command.h"
 #include "tool/interrupt.h"
@@ -53,12 +54,10 @@ static void missing_report(struct build *build)
 		const struct manifest_entry *entry = &build->manifest.entries[i];
 		if (entry->found || !build_shard_has(build->options, entry->name))
 			continue;
-		error_set(
-			&error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "listed, but not among the inputs%s",
-			entry->other_form
-				? "; there is one of the same text in another Unicode form (letters and accents apart, or composed): list it as "
-				  "its file is called"
-				: "");
+		error_set(&error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "listed, but not among the inputs%s",
+		          entry->other_form ? "; there is one of the same text in another Unicode form "
+		                              "(letters and accents apart, or composed): list it as its file is called"
+		                            : "");
 		report_unpacked(build->options->manifest, entry->name, &error, build->options->json);
 		build->totals.missing++;
 	}
@@ -83,14 +82,9 @@ static bp_status archive_write(struct build *build, bool *written, bp_error *err
 			free(record);
 			return BP_OK;
 		}
-		if (item->record_bytes > room) {
-			free(record);
-			room = 2 * (size_t)item->record_bytes;
-			record = malloc(room);
-			if (!record) {
-				status = error_memory(error, room);
-				break;
-			}
+		if (!(record = memory_roomy(record, &room, item->record_bytes))) {
+			status = error_memory(error, item->record_bytes);
+			break;
 		}
 		status = journal_read(&build->journal, item->journal_offset, record, item->record_bytes, error);
 		if (!status)
@@ -241,8 +235,9 @@ int build_run(const struct build_options *options)
 	int signal_number = written ? 0 : interrupt_signal();
 	/* With --strict a refusal is the answer; what else ended it may be mended. */
 	const bool keep = !written && (signal_number || (build.stopped && !(options->strict && build.totals.refused > 0)));
+	int code = written && whole ? EXIT_OK : EXIT_FAILED;
 	if (signal_number)
-		report_text("%s: interrupted; not written", options->output);
+		code = interrupt_exit(options->output);
 	else if (!build.stopped && build.items.count == 0 && whole && !written)
 		empty_report(&build);
 	else
@@ -256,5 +251,5 @@ int build_run(const struct build_options *options)
 	free(build.order);
 	if (build.scanned)
 		source_list_free(&build.sources);
-	return signal_number ? 128 + signal_number : written && whole ? EXIT_OK : EXIT_FAILED;
+	return code;
 }

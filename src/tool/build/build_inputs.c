@@ -54,11 +54,6 @@ static bool is_wanted(void *user, const char *name)
 	return (entry || build->manifest.count == 0) && build_shard_has(build->options, name);
 }
 
-static uint64_t item_weight(const struct source_item *source)
-{
-	return source->bytes != UINT64_MAX ? source->bytes : merl_file_bytes(LATTICE_MERL);
-}
-
 /* Files by name; members of a container where it stands first, one after the other: whoever goes back in it reads it from the start. */
 static int order_compare(const void *a, const void *b, void *user)
 {

@@ -60,12 +60,10 @@ void report_unpacked(const char *label, const char *name, const bp_error *error,
 		struct json line = json_begin(stdout, false);
 		char text[1024];
 		error_describe(error, text, sizeof text);
-		json_object(&line, NULL);
 		if (name)
 			json_string(&line, "name", name);
 		json_string(&line, "path", label);
 		json_string(&line, "error", text);
-		json_close(&line);
 		json_finish(&line);
 		fflush(stdout);
 	}
@@ -76,10 +74,8 @@ void report_passed_over(const char *path, const char *reason, bool json, bool qu
 {
 	if (json) {
 		struct json line = json_begin(stdout, false);
-		json_object(&line, NULL);
 		json_string(&line, "path", path);
 		json_string(&line, "warning", reason);
-		json_close(&line);
 		json_finish(&line);
 	}
 	if (!quiet)
@@ -89,7 +85,6 @@ void report_passed_over(const char *path, const char *reason, bool json, bool qu
 static void material_json(const struct item *item, const char *label, const struct outcome *outcome)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_string(&json, "name", item->source.name);
 	json_string(&json, "path", label);
 	char warnings[WARNINGS_MAX][WARNING_BYTES];
@@ -106,7 +101,6 @@ static void material_json(const struct item *item, const char *label, const stru
 	json_array(&json, "warnings");
 	for (int i = 0; i < count; i++)
 		json_string(&json, NULL, warnings[i]);
-	json_close(&json);
 	json_close(&json);
 	json_finish(&json);
 	fflush(stdout); /* a line per material as it is done: someone may be watching */
@@ -132,7 +126,6 @@ void report_material(const struct item *item, const struct outcome *outcome, boo
 static void summary_json(const char *output, bool written, const struct build_totals *totals, const struct source_list *sources)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_bool(&json, "summary", true);
 	json_string(&json, "archive", output);
 	json_bool(&json, "written", written);
@@ -151,7 +144,6 @@ static void summary_json(const char *output, bool written, const struct build_to
 	json_integer(&json, "source_bytes", totals->source_bytes);
 	json_integer(&json, "bytes", totals->archive_bytes);
 	json_number(&json, "seconds", totals->seconds);
-	json_close(&json);
 	json_finish(&json);
 }
 

@@ -48,7 +48,8 @@ static inline bool totals_whole(const struct build_totals *totals)
 }
 
 /*
- * An input, or (with a name) a material, that is not packed, and why: a message, and with --json a line. The one place that says so.
+ * An input, or (with a name) a material, that is not packed, and why: a message, and with --json a line. The one place that says
+ * so.
  */
 void report_unpacked(const char *label, const char *name, const bp_error *error, bool json);
 
@@ -57,7 +58,10 @@ void report_passed_over(const char *path, const char *reason, bool json, bool qu
 
 void report_material(const struct item *item, const struct outcome *outcome, bool json, bool quiet);
 
-/* After everything: what was passed over, in one line, with the names of texts of licences. More text only when something went wrong; without counts when the build was stopped before its end. */
+/*
+ * After everything: what was passed over, in one line, with the names of texts of licences. More text only when something went
+ * wrong; without counts when the build was stopped before its end.
+ */
 void report_summary(const struct build_options *options, bool written, bool stopped, const struct build_totals *totals,
                     const struct source_list *sources);
 

@@ -3,6 +3,7 @@
 #include "error.h"
 #include "memory.h"
 #include "build_report.h"
+#include "merl/merl_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,6 +20,11 @@ bp_status items_add(struct items *items, const struct source_item *source, bool 
 	items->item = item;
 	items->item[items->count++] = (struct item){.source = *source, .owned = owned};
 	return BP_OK;
+}
+
+uint64_t item_weight(const struct source_item *source)
+{
+	return source->bytes != UINT64_MAX ? source->bytes : merl_file_bytes(LATTICE_MERL);
 }
 
 static int item_compare(const void *a, const void *b)

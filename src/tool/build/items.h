@@ -27,6 +27,9 @@ struct items {
 /* Appends; an owned source is taken over also on failure. */
 bp_status items_add(struct items *items, const struct source_item *source, bool owned, bp_error *error);
 
+/* Bytes of its file, for the progress bar; of a compressed one, which does not tell, those of most. */
+uint64_t item_weight(const struct source_item *source);
+
 void items_sort(struct items *items); /* by name, byte order */
 void items_free(struct items *items); /* a zeroed struct is allowed */
 

@@ -23,11 +23,17 @@ static bp_status put(int fd, const uint8_t *bytes, size_t count, uint64_t offset
 	return BP_OK;
 }
 
+/* What an entry's head says of its record. */
+static uint32_t entry_crc(const uint8_t head[JOURNAL_ENTRY_BYTES], const uint8_t *record, size_t record_bytes)
+{
+	return bytes_crc32_more(bytes_crc32(head + 4, 4), record, record_bytes);
+}
+
 bp_status journal_add(struct journal *journal, const uint8_t *record, size_t record_bytes, uint64_t *offset, bp_error *error)
 {
 	uint8_t head[JOURNAL_ENTRY_BYTES] = JOURNAL_MARK;
 	store_u32(head + 4, (uint32_t)record_bytes);
-	store_u32(head + 8, bytes_crc32_more(bytes_crc32(head + 4, 4), record, record_bytes));
+	store_u32(head + 8, entry_crc(head, record, record_bytes));
 	/* The head last: an entry without it is torn, whatever stands behind. */
 	bp_status status = put(journal->fd, record, record_bytes, journal->bytes + sizeof head, error);
 	if (!status)
@@ -60,8 +66,7 @@ bp_status journal_read(const struct journal *journal, uint64_t offset, uint8_t *
 	bp_status status = get(journal->fd, head, sizeof head, offset - sizeof head, error);
 	if (!status)
 		status = get(journal->fd, record, record_bytes, offset, error);
-	if (!status && (load_u32(head + 4) != record_bytes ||
-	                load_u32(head + 8) != bytes_crc32_more(bytes_crc32(head + 4, 4), record, record_bytes)))
+	if (!status && (load_u32(head + 4) != record_bytes || load_u32(head + 8) != entry_crc(head, record, record_bytes)))
 		status = error_set(error, BP_ERROR_CHECKSUM, BP_NO_OFFSET,
 		                   "the finished records beside it have changed while it ran; has another build the same output?");
 	return status;

@@ -4,6 +4,7 @@
 #include "bytes.h"
 #include "codec/profile_codec.h"
 #include "error.h"
+#include "memory.h"
 #include "output_file.h"
 #include "output_path.h"
 
@@ -54,7 +55,7 @@ static bp_status header_make(const char *target, const struct fit_options *optio
 static bp_status entries_scan(struct journal *journal, uint64_t file_bytes, bp_error *error)
 {
 	uint8_t head[JOURNAL_ENTRY_BYTES], *record = NULL;
-	size_t room = 0, entry_room = 0;
+	size_t room = 0;
 	bp_status status = BP_OK;
 
 	while (!status && journal->bytes + sizeof head <= file_bytes) {
@@ -65,33 +66,22 @@ static bp_status entries_scan(struct journal *journal, uint64_t file_bytes, bp_e
 		const uint32_t bytes = load_u32(head + 4);
 		if (bytes > RECORD_BYTES_MAX || bytes > file_bytes - journal->bytes - sizeof head)
 			break;
-		if (bytes > room) {
-			free(record);
-			room = 2 * (size_t)bytes;
-			record = malloc(room);
-			if (!record) {
-				status = error_memory(error, room);
-				break;
-			}
+		if (!(record = memory_roomy(record, &room, bytes))) {
+			status = error_memory(error, bytes);
+			break;
 		}
 		const uint64_t offset = journal->bytes + sizeof head;
 		if (journal_read(journal, offset, record, bytes, NULL) || record_head_read(record, bytes, &about, NULL) ||
 		    about.record_bytes != bytes)
 			break;
-		if (journal->found_count == entry_room) {
-			entry_room = entry_room ? 2 * entry_room : 64;
-			struct journal_entry *more = realloc(journal->found, entry_room * sizeof *more);
-			if (!more) {
-				status = error_memory(error, entry_room * sizeof *more);
-				break;
-			}
-			journal->found = more;
+		struct journal_entry *more = memory_grown(journal->found, journal->found_count, sizeof *more);
+		char *name = more ? strdup(about.name) : NULL;
+		journal->found = more ? more : journal->found;
+		if (!name) {
+			status = error_memory(error, sizeof *more);
+			break;
 		}
-		char *name = strdup(about.name);
-		if (!name)
-			status = error_memory(error, strlen(about.name));
-		else
-			journal->found[journal->found_count++] = (struct journal_entry){.name = name, .offset = offset, .bytes = bytes};
+		journal->found[journal->found_count++] = (struct journal_entry){.name = name, .offset = offset, .bytes = bytes};
 		journal->bytes = offset + bytes;
 	}
 	free(record);
@@ -185,6 +175,7 @@ bp_status journal_open(const char *output, const struct fit_options *options, bo
 	uint64_t file_bytes = 0;
 	struct stat about;
 	char *target = NULL;
+	enum claim claimed = CLAIM_FAILED;
 	bool found;
 
 	*remark = '\0';
@@ -196,7 +187,7 @@ bp_status journal_open(const char *output, const struct fit_options *options, bo
 	free(target);
 	if (status)
 		goto out;
-	const enum claim claimed = claim(journal.path, &journal.fd, &file_bytes, there);
+	claimed = claim(journal.path, &journal.fd, &file_bytes, there);
 	if (claimed == CLAIM_NEW || claimed == CLAIM_OLD) {
 		status = claimed == CLAIM_NEW ? begin(&journal, header, error)
 		                              : take_over(&journal, header, there, file_bytes, resume, remark, error);
@@ -216,9 +207,14 @@ bp_status journal_open(const char *output, const struct fit_options *options, bo
 	journal = (struct journal){.fd = -1};
 	status = output_scratch_open(output, &journal.fd, error);
 out:
-	if (status)
-		journal_close(&journal, true);
-	else
+	if (!status) {
 		*out = journal;
+		return BP_OK;
+	}
+	if (claimed == CLAIM_OLD) { /* stays as it is: an older build's records may stand in what was not read */
+		free(journal.path);
+		journal.path = NULL;
+	}
+	journal_close(&journal, false);
 	return status;
 }

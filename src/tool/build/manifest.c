@@ -228,20 +228,14 @@ void manifest_note_unlisted(struct manifest *manifest, const char *name)
 		manifest->entries[number].other_form = true;
 }
 
+static int name_compare_to(const void *name, const void *entry)
+{
+	return strcmp(name, ((const struct manifest_entry *)entry)->name);
+}
+
 struct manifest_entry *manifest_find(const struct manifest *manifest, const char *name)
 {
-	size_t low = 0, high = manifest->count;
-	while (low < high) {
-		size_t middle = low + (high - low) / 2;
-		int order = strcmp(manifest->entries[middle].name, name);
-		if (order == 0)
-			return &manifest->entries[middle];
-		if (order < 0)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return NULL;
+	return manifest->count ? bsearch(name, manifest->entries, manifest->count, sizeof *manifest->entries, name_compare_to) : NULL;
 }
 
 bp_status manifest_check(const struct manifest_entry *entry, uint64_t bytes, const uint8_t sha256[32], bp_error *error)

@@ -5,8 +5,8 @@
  * are skipped; a line ends with LF or CR LF. Either every line is just a name, or columns are
  * separated by tabs: then the first line may name them (`name` must be among them; `bytes` and
  * `sha256` are used when they are there, others are ignored), and without such a line they are
- * name, bytes, sha256 in this order. An empty column says nothing about the material. A name may be written as its measured file's,
- * NAME.binary or FOLDER/NAME.binary, as `ls` and `find` print it. A byte order mark at the beginning is passed over.
+ * name, bytes, sha256 in this order. An empty column says nothing about the material. A name may be written as its measured
+ * file's, NAME.binary or FOLDER/NAME.binary, as `ls` and `find` print it. A byte order mark at the beginning is passed over.
  */
 #ifndef TOOL_BUILD_MANIFEST_H
 #define TOOL_BUILD_MANIFEST_H

@@ -70,7 +70,7 @@ static void outcome_take(struct build *build, struct item *item, struct outcome 
 		build->totals.kept += outcome->origin == RECORD_KEPT;
 		build->totals.source_bytes += outcome->source.bytes;
 	}
-	build->bytes_done += item->source.bytes != UINT64_MAX ? item->source.bytes : merl_file_bytes(LATTICE_MERL);
+	build->bytes_done += item_weight(&item->source);
 	item->outcome = outcome;
 	outcomes_report(build);
 	outcomes_show_progress(build);

@@ -10,135 +10,82 @@
 #include <iconv.h>
 #include <stdlib.h>
 
-enum {
-	OPTION_PROFILE = OPTION_LONG,
-	OPTION_BUDGET,
-	OPTION_MAX_ERROR,
-	OPTION_EFFORT,
-	OPTION_MANIFEST,
-	OPTION_STRICT,
-	OPTION_UPDATE,
-	OPTION_JSON,
-	OPTION_ANY_LATTICE,
-	OPTION_SHARD,
-	OPTION_FORCE,
-	OPTION_CHARSET,
-	OPTION_ZEROS
-};
-
 enum { SHARDS_MOST = 65536 };
 
 /* "K/N" */
-static bool shard_parse(const char *text, struct build_options *options)
+static bool shard_take(const struct command *self, const struct option_rule *rule, const char *text)
 {
+	struct build_options *options = rule->to;
+	unsigned long k = 0, n = 0;
 	char *end;
-	if (*text < '0' || *text > '9')
-		return false;
-	const unsigned long k = strtoul(text, &end, 10);
-	if (*end != '/' || end[1] < '0' || end[1] > '9')
-		return false;
-	const unsigned long n = strtoul(end + 1, &end, 10);
+	if (*text >= '0' && *text <= '9') {
+		k = strtoul(text, &end, 10);
+		if (*end == '/' && end[1] >= '0' && end[1] <= '9')
+			n = strtoul(end + 1, &end, 10);
+	}
 	options->shard = (unsigned)k;
 	options->shard_count = (unsigned)n;
-	return !*end && k >= 1 && k <= n && n <= SHARDS_MOST;
+	if (n > 0 && !*end && k >= 1 && k <= n && n <= SHARDS_MOST)
+		return true;
+	report_usage(self, "--shard: '%s' is not K/N with 1 <= K <= N <= %d, as in 3/16", text, SHARDS_MOST);
+	return false;
 }
 
-static bool charset_known(const char *name)
+static bool charset_take(const struct command *self, const struct option_rule *rule, const char *text)
 {
-	const iconv_t conversion = iconv_open("UTF-8", name);
-	if (conversion == (iconv_t)-1)
-		return false;
-	iconv_close(conversion);
-	return true;
+	const iconv_t conversion = iconv_open("UTF-8", text);
+	*(const char **)rule->to = text;
+	if (conversion != (iconv_t)-1)
+		return iconv_close(conversion) == 0;
+	report_usage(self, "--charset: no character set is called '%s'; `iconv -l` lists them", text);
+	return false;
+}
+
+static bool zeros_take(const struct command *self, const struct option_rule *rule, const char *text)
+{
+	if (zeros_parse(text, rule->to))
+		return true;
+	report_usage(self, "--zeros: '%s' is neither 'auto' nor 'holes' nor 'measured'", text);
+	return false;
 }
 
 static int build_main(const struct command *self, int argc, char **argv)
 {
-	static const struct option names[] = {
-		{"output", required_argument, NULL, 'o'},
-		{"jobs", required_argument, NULL, 'j'},
-		{"quiet", no_argument, NULL, 'q'},
-		{"profile", required_argument, NULL, OPTION_PROFILE},
-		{"budget", required_argument, NULL, OPTION_BUDGET},
-		{"max-error", required_argument, NULL, OPTION_MAX_ERROR},
-		{"effort", required_argument, NULL, OPTION_EFFORT},
-		{"manifest", required_argument, NULL, OPTION_MANIFEST},
-		{"strict", no_argument, NULL, OPTION_STRICT},
-		{"update", no_argument, NULL, OPTION_UPDATE},
-		{"json", no_argument, NULL, OPTION_JSON},
-		{"force", no_argument, NULL, OPTION_FORCE},
-		{"charset", required_argument, NULL, OPTION_CHARSET},
-		{"shard", required_argument, NULL, OPTION_SHARD},
-		{"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
-		{"zeros", required_argument, NULL, OPTION_ZEROS},
-		{0},
-	};
 	struct build_options options = {
-		.fit = {.profile = PROFILE_SPECTRAL, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL},
+		.fit = {.profile = PROFILE_SPECTRAL},
 		.workers = cores_usable(),
 	};
-	bool has_budget = false;
-	int64_t number;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "o:j:q", names)) >= 0) {
-		switch (option) {
-		case 'o': options.output = optarg; break;
-		case 'q': options.quiet = true; break;
-		case OPTION_MANIFEST: options.manifest = optarg; break;
-		case OPTION_STRICT: options.strict = true; break;
-		case OPTION_UPDATE: options.update = true; break;
-		case OPTION_FORCE: options.force = true; break;
-		case OPTION_CHARSET:
-			if (!charset_known(optarg))
-				return report_usage(self, "--charset: no character set is called '%s'; `iconv -l` lists them", optarg);
-			options.charset = optarg;
-			break;
-		case OPTION_JSON: options.json = true; break;
-		case OPTION_ANY_LATTICE: options.any_lattice = true; break;
-		case 'j':
-			if (!option_jobs(self, optarg, &options.workers))
-				return EXIT_USAGE;
-			break;
-		case OPTION_PROFILE:
-			if (!option_profile(self, optarg, &options.fit.profile))
-				return EXIT_USAGE;
-			break;
-		case OPTION_ZEROS:
-			if (!zeros_parse(optarg, &options.fit.zeros))
-				return report_usage(self, "--zeros: '%s' is neither 'auto' nor 'holes' nor 'measured'", optarg);
-			break;
-		case OPTION_BUDGET:
-			if (!option_bytes(self, "--budget", optarg, RECORD_BUDGET_MIN, RECORD_BUDGET_MAX, &number))
-				return EXIT_USAGE;
-			options.fit.budget_bytes = (uint32_t)number;
-			has_budget = true;
-			break;
-		case OPTION_MAX_ERROR:
-			if (!option_number(self, "--max-error", optarg, 1e-6, 10, &options.fit.max_error))
-				return EXIT_USAGE;
-			break;
-		case OPTION_SHARD:
-			if (!shard_parse(optarg, &options))
-				return report_usage(self, "--shard: '%s' is not K/N with 1 <= K <= N <= %d, as in 3/16", optarg, SHARDS_MOST);
-			break;
-		case OPTION_EFFORT:
-			if (!option_integer(self, "--effort", optarg, 1, 9, &number))
-				return EXIT_USAGE;
-			options.fit.effort = (int)number;
-			break;
-		}
-	}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	int64_t budget = 0, effort = EFFORT_USUAL;
+	const struct option_rule rules[] = {
+		{"output", 'o', option_text, .to = &options.output},
+		{"jobs", 'j', option_jobs, .to = &options.workers},
+		{"quiet", 'q', option_flag, .to = &options.quiet},
+		{"profile", 0, option_profile, .to = &options.fit.profile},
+		{"budget", 0, option_bytes, &budget, RECORD_BUDGET_MIN, RECORD_BUDGET_MAX},
+		{"max-error", 0, option_number, &options.fit.max_error, 1e-6, 10},
+		{"effort", 0, option_integer, &effort, 1, 9},
+		{"manifest", 0, option_text, .to = &options.manifest},
+		{"strict", 0, option_flag, .to = &options.strict},
+		{"update", 0, option_flag, .to = &options.update},
+		{"json", 0, option_flag, .to = &options.json},
+		{"force", 0, option_flag, .to = &options.force},
+		{"charset", 0, charset_take, .to = &options.charset},
+		{"shard", 0, shard_take, .to = &options},
+		{"any-lattice", 0, option_flag, .to = &options.any_lattice},
+		{"zeros", 0, zeros_take, .to = &options.fit.zeros},
+		{0},
+	};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (!option_output(self, options.output, "OUT.bpk"))
 		return EXIT_USAGE;
 	if (optind >= argc)
 		return report_usage(self, "no input; give measured files, folders, tar or zip files");
-	if (has_budget && options.fit.max_error > 0)
+	if (budget && options.fit.max_error > 0)
 		return report_usage(self, "--budget and --max-error exclude each other");
-	if (options.fit.max_error > 0)
-		options.fit.budget_bytes = RECORD_BUDGET_MAX;
+	options.fit.budget_bytes = options.fit.max_error > 0 ? RECORD_BUDGET_MAX : budget ? (uint32_t)budget : BUDGET_USUAL;
+	options.fit.effort = (int)effort;
 	options.inputs = argv + optind;
 	options.input_count = argc - optind;
 	return build_run(&options);

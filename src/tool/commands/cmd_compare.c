@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "output_file.h"
 #include "shown.h"
 
 /* The plan of every pixel and light is kept: 0.7 GB at 512 pixels. */
@@ -26,34 +27,32 @@ struct compare {
 	bool force;
 	struct compare_report report;
 	struct selection selection;
-	struct source_list sources;
+	struct measured_set measured; /* a name is NULL where there is nothing to measure */
 	struct compare_item *items;
 	size_t count, printed, failed;
-	bool headed;        /* the table's head has been printed */
-	bool images_made;   /* the pictures' folder is ours */
-	const char **names; /* the items'; NULL where there is nothing to measure */
+	bool headed;      /* the table's head has been printed */
+	bool images_made; /* the pictures' folder is ours */
 	struct compare_job job;
 };
 
 /* The materials that are compared: index entries of the selection. */
 static bp_status items_read(struct compare *compare, bp_error *error)
 {
-	bp_status status = BP_OK;
-	compare->count = (size_t)compare->selection.count;
+	bp_status status = measured_set_read(&compare->selection, &compare->measured, error);
+	if (status != BP_OK)
+		return status;
+	compare->count = compare->measured.count;
 	compare->items = calloc(compare->count + 1, sizeof *compare->items);
-	compare->names = calloc(compare->count + 1, sizeof *compare->names);
-	if (!compare->items || !compare->names)
+	if (!compare->items)
 		return error_memory(error, compare->count * sizeof *compare->items);
-	for (size_t n = 0; n < compare->count && status == BP_OK; n++) {
-		status = selection_entry(&compare->selection, n, &compare->items[n].entry, error);
-		compare->names[n] = compare->items[n].entry.name;
-	}
-	return status;
+	for (size_t n = 0; n < compare->count; n++)
+		compare->items[n].name = compare->measured.name[n];
+	return BP_OK;
 }
 
 static void item_fail(struct compare *compare, struct compare_item *item, const bp_error *error)
 {
-	report_error(compare->archive_path, item->entry.name, error);
+	report_error(compare->archive_path, item->name, error);
 	item->done = item->failed = true;
 	compare->failed++;
 }
@@ -61,20 +60,16 @@ static void item_fail(struct compare *compare, struct compare_item *item, const 
 /* Finds every item's measured file; those without one have failed. */
 static bp_status sources_find(struct compare *compare, bp_error *error)
 {
-	bp_status status = measured_find(compare->folder, compare->names, compare->count, &compare->sources, error);
-	if (status != BP_OK)
-		return status;
-	for (size_t n = 0; n < compare->count; n++) {
-		struct compare_item *item = &compare->items[n];
-		item->source = source_list_find(&compare->sources, item->entry.name);
-		if (item->source)
-			continue;
+	bp_status status = measured_set_find(&compare->measured, compare->folder, error);
+	for (size_t n = 0; n < compare->count && status == BP_OK; n++) {
 		bp_error missing;
+		if (compare->measured.item[n].source)
+			continue;
 		error_set(&missing, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s holds no measured file of that name", compare->folder);
-		item_fail(compare, item, &missing);
-		compare->names[n] = NULL;
+		item_fail(compare, &compare->items[n], &missing);
+		compare->measured.name[n] = NULL;
 	}
-	return BP_OK;
+	return status;
 }
 
 /* The folder for pictures, made if need be; checked before anything is computed. */
@@ -105,7 +100,7 @@ static bool images_check(const struct compare *compare)
 	bool all = true;
 	for (size_t n = 0; n < compare->count; n++)
 		for (int l = 0; l < LIGHTING_COUNT; l++) {
-			char *path = compare->report.lightings & 1u << l ? image_path(compare, compare->items[n].entry.name, l) : NULL;
+			char *path = compare->report.lightings & 1u << l ? image_path(compare, compare->items[n].name, l) : NULL;
 			if (path && lstat(path, &about) == 0)
 				all &= output_check(path, OUTPUT_KIND_PICTURE, compare->force, &compare->archive_path, 1);
 			free(path);
@@ -120,10 +115,10 @@ static bp_status images_write(const struct compare *compare, const struct compar
 		uint32_t bytes = item->result.png_bytes[l];
 		if (!bytes)
 			continue;
-		char *path = image_path(compare, item->entry.name, l);
+		char *path = image_path(compare, item->name, l);
 		if (!path)
 			return error_memory(error, 512);
-		status = file_write_whole(path, png, bytes, error);
+		status = output_file_write_whole(path, OUTPUT_REPLACE, png, bytes, error);
 		free(path);
 		png += bytes;
 	}
@@ -136,7 +131,7 @@ static void rows_print(struct compare *compare)
 	for (; compare->printed < compare->count && compare->items[compare->printed].done; compare->printed++) {
 		struct compare_item *item = &compare->items[compare->printed];
 		if (item->error)
-			report_error(compare->archive_path, item->entry.name, item->error);
+			report_error(compare->archive_path, item->name, item->error);
 		free(item->error);
 		item->error = NULL;
 		if (item->failed)
@@ -179,18 +174,18 @@ static bp_status materials_measure(struct compare *compare, bp_error *error)
 	                                        .result = result_take,
 	                                        .result_user = compare};
 	struct lattice_dims dims;
-	compare->job.items = compare->items;
+	compare->job.items = compare->measured.item;
 	/* before the fork, so that the workers share the plans' memory */
 	bp_status status =
 		selection_dims(&compare->selection, &dims) ? comparison_plans_make(&compare->job.plans, dims, error) : BP_OK;
-	return status == BP_OK ? workers_run(&options, compare->names, compare->count, error) : status;
+	return status == BP_OK ? workers_run(&options, compare->measured.name, compare->count, error) : status;
 }
 
 static void name_width_set(struct compare *compare)
 {
 	compare->report.name_width = (int)strlen("material");
 	for (size_t n = 0; n < compare->count; n++) {
-		int width = shown_columns(compare->items[n].entry.name);
+		int width = shown_columns(compare->items[n].name);
 		if (width > compare->report.name_width)
 			compare->report.name_width = width;
 	}
@@ -223,42 +218,22 @@ static int materials_compare(struct compare *compare)
 
 static int compare_main(const struct command *self, int argc, char **argv)
 {
-	enum { LIGHT = OPTION_LONG, SIZE, JSON, IMAGES, FORCE };
-	static const struct option names[] = {{"light", required_argument, NULL, LIGHT},
-	                                      {"size", required_argument, NULL, SIZE},
-	                                      {"json", no_argument, NULL, JSON},
-	                                      {"images", required_argument, NULL, IMAGES},
-	                                      {"jobs", required_argument, NULL, 'j'},
-	                                      {"force", no_argument, NULL, FORCE},
-	                                      {0}};
-	struct compare compare = {.workers = cores_usable(), .report.lightings = LIGHTINGS_ALL};
-	enum lighting lighting;
+	struct compare compare = {.workers = cores_usable()};
+	enum lighting lighting = LIGHTING_COUNT;
 	int64_t size = SPHERE_SIZE;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "j:", names)) >= 0)
-		switch (option) {
-		case LIGHT:
-			if (!option_light(self, optarg, &lighting))
-				return EXIT_USAGE;
-			compare.report.lightings = 1u << lighting;
-			break;
-		case SIZE:
-			if (!option_integer(self, "--size", optarg, 1, COMPARE_SIZE_MAX, &size))
-				return EXIT_USAGE;
-			break;
-		case FORCE: compare.force = true; break;
-		case JSON: compare.report.json = true; break;
-		case IMAGES: compare.images = optarg; break;
-		case 'j':
-			if (!option_jobs(self, optarg, &compare.workers))
-				return EXIT_USAGE;
-			break;
-		}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {{"light", 0, option_light, .to = &lighting},
+	                                    {"size", 0, option_integer, &size, 1, COMPARE_SIZE_MAX},
+	                                    {"json", 0, option_flag, .to = &compare.report.json},
+	                                    {"images", 0, option_text, .to = &compare.images},
+	                                    {"jobs", 'j', option_jobs, .to = &compare.workers},
+	                                    {"force", 0, option_flag, .to = &compare.force},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (argc - optind < 2)
 		return report_usage(self, "%s", argc == optind ? "no archive" : "no folder of measured files");
+	compare.report.lightings = lightings_of(lighting);
 	compare.archive_path = argv[optind];
 	compare.folder = argv[optind + 1];
 	if (!selection_open(&compare.selection, compare.archive_path, argv + optind + 2, argc - optind - 2))
@@ -266,20 +241,18 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	compare.job = (struct compare_job){.archive = compare.selection.archive,
 	                                   .images = compare.images != NULL,
 	                                   .plans = {.lightings = compare.report.lightings, .size = (uint32_t)size}};
-	int code = EXIT_FAILED;
-	if (compare.selection.count > 0) {
+	code = EXIT_FAILED;
+	if (compare.selection.count > 0)
 		code = materials_compare(&compare);
-	} else if (!compare.selection.incomplete) {
+	else if (!compare.selection.incomplete)
 		report_text("%s: no material in it", compare.archive_path);
-	}
 	if (code != EXIT_OK && compare.images_made)
 		rmdir(compare.images); /* where it holds pictures it stays */
 	comparison_plans_free(&compare.job.plans);
-	source_list_free(&compare.sources);
 	for (size_t n = 0; n < compare.count && compare.items; n++)
 		free(compare.items[n].error);
 	free(compare.items);
-	free(compare.names);
+	measured_set_free(&compare.measured);
 	selection_close(&compare.selection);
 	return code;
 }
@@ -298,8 +271,8 @@ const struct command command_compare = {
 			 "  cube-root RMSE  of the cube roots of the values times the smaller cosine\n"
 			 "  largest relative error  |decoded - measured|/(measured + 1e-2), and its angles in degrees\n"
 			 "  albedo     the largest share of light sent back, for directions 0 to 85 degrees from the normal\n"
-			 "Where the file is the one that was packed, the errors that the record tells of each layer are measured again and "
-			 "must agree.\n"
+			 "Where the file is the one that was packed, the errors that the record tells of each layer\n"
+			 "are measured again and must agree.\n"
 			 "Cells that are invalid in the measured file count in nothing: they are black on both sides;\n"
 			 "so do those that `build` would take as holes (--zeros).\n"
 			 "\n"

@@ -17,36 +17,36 @@
 #include <string.h>
 
 /* Room for one decoded table, kept from material to material as long as the lattice is the same. */
-struct table {
+struct decoded_room {
 	struct expansion expansion;
 	uint8_t *below;
 	double limit;     /* of `below` */
 	bool any_lattice; /* also tables of more than twice as many cells as MERL's: few bytes of an archive can ask for gigabytes */
 };
 
-static void table_free(struct table *table)
+static void room_free(struct decoded_room *room)
 {
-	expansion_free(&table->expansion);
-	free(table->below);
-	*table = (struct table){.any_lattice = table->any_lattice};
+	expansion_free(&room->expansion);
+	free(room->below);
+	*room = (struct decoded_room){.any_lattice = room->any_lattice};
 }
 
-static bp_status table_fit(struct table *table, const struct model *model, bp_error *error)
+static bp_status room_fit(struct decoded_room *room, const struct model *model, bp_error *error)
 {
 	bp_status status;
-	if (table->below && lattice_dims_equal(table->expansion.dims, model->dims) && table->limit == model->horizon_limit)
+	if (room->below && lattice_dims_equal(room->expansion.dims, model->dims) && room->limit == model->horizon_limit)
 		return BP_OK;
-	table_free(table);
+	room_free(room);
 	size_t cells = lattice_cells(model->dims);
-	status = expansion_alloc(model->dims, &table->expansion, error);
+	status = expansion_alloc(model->dims, &room->expansion, error);
 	if (status)
 		return status;
-	table->below = malloc(cells);
+	room->below = malloc(cells);
 	status =
-		table->below ? lattice_below_horizon(model->dims, model->horizon_limit, table->below, error) : error_memory(error, cells);
-	table->limit = model->horizon_limit;
+		room->below ? lattice_below_horizon(model->dims, model->horizon_limit, room->below, error) : error_memory(error, cells);
+	room->limit = model->horizon_limit;
 	if (status)
-		table_free(table);
+		room_free(room);
 	return status;
 }
 
@@ -79,7 +79,7 @@ static bp_status record_read(const struct selection *selection, const struct ind
 }
 
 static bp_status merl_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
-                            const char *path, enum output_rule rule, bool plain, struct table *table, bp_error *error)
+                            const char *path, enum output_rule rule, bool plain, struct decoded_room *room, bp_error *error)
 {
 	struct model *model = NULL;
 	uint8_t *record = NULL;
@@ -87,27 +87,13 @@ static bp_status merl_write(const struct selection *selection, const struct inde
 	if (!status && !plain)
 		status = record_read(selection, entry, &record, error);
 	if (!status)
-		status = table_fit(table, model, error);
+		status = room_fit(room, model, error);
 	if (!status)
-		status = model_expand(model, 0, &table->expansion, error);
+		status = model_expand(model, 0, &room->expansion, error);
 	if (!status)
-		status = lattice_write_path(path, rule, &table->expansion, table->below, record, record ? head->record_bytes : 0, error);
+		status = lattice_write_path(path, rule, &room->expansion, room->below, record, record ? head->record_bytes : 0, error);
 	model_free(model);
 	free(record);
-	return status;
-}
-
-/* Writes all of the bytes, or none. */
-static bp_status bytes_write(const struct byte_buffer *bytes, const char *path, enum output_rule rule, bp_error *error)
-{
-	struct output_file file;
-	bp_status status = output_file_open(path, rule, &file, error);
-	if (status)
-		return status;
-	status = output_file_write(&file, bytes->bytes, bytes->count, error);
-	if (!status)
-		return output_file_commit(&file, error);
-	output_file_discard(&file);
 	return status;
 }
 
@@ -130,7 +116,7 @@ static bp_status export_write(const struct selection *selection, const struct in
 	if (!status)
 		status = export_material(model, head->name, options, &bytes, &deviation, error);
 	if (!status)
-		status = bytes_write(&bytes, path, rule, error);
+		status = output_file_write_whole(path, rule, bytes.bytes, bytes.count, error);
 	if (!status && deviation.psnr < EXPORT_POOR && rule != OUTPUT_COMPARE)
 		report_warning(path, NULL, "in %zu bytes it is %.1f dB from the material; a larger --size brings it nearer", bytes.count,
 		               deviation.psnr);
@@ -149,13 +135,11 @@ static bp_status json_write(const struct record_head *head, const struct origin 
 	if (!memory)
 		return error_memory(error, BUFSIZ);
 	struct json json = json_begin(memory, true);
-	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
 	facts_full(&json, head, origin);
-	json_close(&json);
 	json_finish(&json);
 	fclose(memory);
-	status = text.failed ? error_memory(error, text.count) : bytes_write(&text, path, rule, error);
+	status = text.failed ? error_memory(error, text.count) : output_file_write_whole(path, rule, text.bytes, text.count, error);
 	byte_buffer_free(&text);
 	return status;
 }
@@ -164,7 +148,7 @@ struct extraction {
 	struct selection selection;
 	enum form form;
 	struct export_options export;
-	struct table table;
+	struct decoded_room room;
 	struct index_entry entry; /* of the material that was asked for last */
 };
 
@@ -192,13 +176,12 @@ static bp_status material_write(void *user, uint64_t n, const char *path, enum o
 		status = archive_entry_origin(selection->archive, &extraction->entry, &head, &origin, error);
 		return status ? status : json_write(&head, &origin, path, rule, error);
 	}
-	status = lattice_size_check(&head, extraction->table.any_lattice, error);
+	status = lattice_size_check(&head, extraction->room.any_lattice, error);
 	if (status)
 		return status;
 	if (extraction->form == FORM_EXPORT)
 		return export_write(selection, &extraction->entry, &head, path, rule, &extraction->export, error);
-	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->table,
-	                  error);
+	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->room, error);
 }
 
 static void material_failed(void *user, uint64_t n, const bp_error *error)
@@ -208,20 +191,21 @@ static void material_failed(void *user, uint64_t n, const bp_error *error)
 	report_error(extraction->selection.path, extraction->entry.name[0] ? extraction->entry.name : NULL, error);
 }
 
-/* NULL, after a message, where there is no format of that name. */
-static const struct format *format_find(const struct command *self, const char *name)
+static bool format_take(const struct command *self, const struct option_rule *rule, const char *text)
 {
 	struct name_guess guess;
-	name_guess_start(&guess, name);
+	name_guess_start(&guess, text);
 	for (int n = 0; n < FORMAT_COUNT; n++) {
-		if (!strcmp(FORMATS[n].name, name))
-			return &FORMATS[n];
+		if (!strcmp(FORMATS[n].name, text)) {
+			*(const struct format **)rule->to = &FORMATS[n];
+			return true;
+		}
 		name_guess_offer(&guess, FORMATS[n].name);
 	}
 	const char *best = name_guess_best(&guess);
-	report_usage(self, "--format: '%s' is none of merl, json, bsdf and mbsdf%s%s%s", name, best ? "; did you mean '" : "",
+	report_usage(self, "--format: '%s' is none of merl, json, bsdf and mbsdf%s%s%s", text, best ? "; did you mean '" : "",
 	             best ? best : "", best ? "'?" : "");
-	return NULL;
+	return false;
 }
 
 /* What belongs together on the command line. */
@@ -244,7 +228,8 @@ static int wishes_take(const struct command *self, const struct wishes *wishes, 
 		return report_usage(self, "--spectral is about --format bsdf");
 	if (wishes->size && !exports)
 		return report_usage(self, "--size is about --format bsdf and --format mbsdf");
-	if (wishes->size && !option_bytes(self, "--size", wishes->size, 1, EXPORT_BYTES_MAX, &most))
+	if (wishes->size &&
+	    !option_bytes(self, &(const struct option_rule){"size", 0, option_bytes, &most, 1, EXPORT_BYTES_MAX}, wishes->size))
 		return EXIT_USAGE;
 	if (exports && (uint64_t)most < least)
 		return report_usage(
@@ -257,36 +242,20 @@ static int wishes_take(const struct command *self, const struct wishes *wishes, 
 
 static int extract_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_FORMAT = OPTION_LONG, OPTION_PLAIN, OPTION_FORCE, OPTION_ANY_LATTICE, OPTION_SPECTRAL, OPTION_SIZE };
-	static const struct option names[] = {{"directory", required_argument, NULL, 'C'},
-	                                      {"format", required_argument, NULL, OPTION_FORMAT},
-	                                      {"plain", no_argument, NULL, OPTION_PLAIN},
-	                                      {"force", no_argument, NULL, OPTION_FORCE},
-	                                      {"any-lattice", no_argument, NULL, OPTION_ANY_LATTICE},
-	                                      {"spectral", no_argument, NULL, OPTION_SPECTRAL},
-	                                      {"size", required_argument, NULL, OPTION_SIZE},
-	                                      {0}};
 	struct extraction extraction = {.form = FORM_MERL};
 	struct wishes wishes = {.format = FORMATS, .folder = "."};
-	int option;
-
-	while ((option = options_next(self, argc, argv, "C:", names)) >= 0)
-		switch (option) {
-		case 'C': wishes.folder = optarg; break;
-		case OPTION_PLAIN: wishes.plain = true; break;
-		case OPTION_FORCE: wishes.force = true; break;
-		case OPTION_ANY_LATTICE: extraction.table.any_lattice = true; break;
-		case OPTION_SPECTRAL: wishes.spectral = true; break;
-		case OPTION_SIZE: wishes.size = optarg; break;
-		case OPTION_FORMAT:
-			wishes.format = format_find(self, optarg);
-			if (!wishes.format)
-				return EXIT_USAGE;
-			break;
-		}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
-	int code = wishes_take(self, &wishes, &extraction);
+	const struct option_rule rules[] = {{"directory", 'C', option_text, .to = &wishes.folder},
+	                                    {"format", 0, format_take, .to = &wishes.format},
+	                                    {"plain", 0, option_flag, .to = &wishes.plain},
+	                                    {"force", 0, option_flag, .to = &wishes.force},
+	                                    {"any-lattice", 0, option_flag, .to = &extraction.room.any_lattice},
+	                                    {"spectral", 0, option_flag, .to = &wishes.spectral},
+	                                    {"size", 0, option_text, .to = &wishes.size},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
+	code = wishes_take(self, &wishes, &extraction);
 	if (code == EXIT_OK)
 		code = selection_from(&extraction.selection, self, argv + optind, argc - optind);
 	if (code != EXIT_OK)
@@ -300,7 +269,7 @@ static int extract_main(const struct command *self, int argc, char **argv)
 	                               .write = material_write,
 	                               .failed = material_failed};
 	bool whole = folder_write(&set) && !extraction.selection.incomplete;
-	table_free(&extraction.table);
+	room_free(&extraction.room);
 	selection_close(&extraction.selection);
 	return whole ? EXIT_OK : EXIT_FAILED;
 }

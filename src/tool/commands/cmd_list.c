@@ -141,17 +141,14 @@ static void material_print(const struct record_head *head, const struct origin *
 static void material_json(const struct record_head *head, const struct origin *origin)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_string(&json, "name", head->name);
 	facts_full(&json, head, origin);
-	json_close(&json);
 	json_finish(&json);
 }
 
 static void totals_json(const struct selection *selection, const struct totals *totals, const char *sha256)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_bool(&json, "summary", true);
 	json_string(&json, "archive", selection->path);
 	json_integer(&json, "materials", totals->materials);
@@ -159,7 +156,6 @@ static void totals_json(const struct selection *selection, const struct totals *
 	json_integer(&json, "source_bytes", totals->source_bytes);
 	if (sha256[0])
 		json_string(&json, "sha256", sha256);
-	json_close(&json);
 	json_finish(&json);
 }
 
@@ -174,20 +170,17 @@ static void totals_print(const struct totals *totals)
 
 static int list_main(const struct command *self, int argc, char **argv)
 {
-	enum { JSON = OPTION_LONG, SHA256 };
-	static const struct option names[] = {{"json", no_argument, NULL, JSON}, {"sha256", no_argument, NULL, SHA256}, {0}};
 	struct selection selection;
 	struct totals totals = {0};
 	bool json = false, digest = false;
-	int option, width = 0;
-
-	while ((option = options_next(self, argc, argv, "", names)) >= 0)
-		*(option == JSON ? &json : &digest) = true;
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
-	int opened = selection_from(&selection, self, argv + optind, argc - optind);
-	if (opened != EXIT_OK)
-		return opened;
+	int width = 0;
+	const struct option_rule rules[] = {{"json", 0, option_flag, .to = &json}, {"sha256", 0, option_flag, .to = &digest}, {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
+	code = selection_from(&selection, self, argv + optind, argc - optind);
+	if (code != EXIT_OK)
+		return code;
 	if (selection.all && !json) {
 		width = widest_name(&selection);
 		printf("%-*s %9s  %-8s %6s  %8s   %-29s   %s\n", width, "material", "bytes", "profile", "layers", "log RMSE",

@@ -49,28 +49,19 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 
 static int merge_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_REPLACE = OPTION_LONG, OPTION_EXPECT, OPTION_FORCE };
-	static const struct option names[] = {
-		{"output", required_argument, NULL, 'o'},       {"quiet", no_argument, NULL, 'q'},
-		{"replace", no_argument, NULL, OPTION_REPLACE}, {"expect", required_argument, NULL, OPTION_EXPECT},
-		{"force", no_argument, NULL, OPTION_FORCE},     {0}};
 	struct copy_options options = {.stop = interrupt_came};
 	bool quiet = false, force = false;
 	int64_t expected = 0;
-	int option, result = EXIT_FAILED;
 	bp_error error;
-
-	while ((option = options_next(self, argc, argv, "o:q", names)) >= 0) {
-		if (option == 'o')
-			options.output = optarg;
-		if (option == OPTION_EXPECT && !option_integer(self, "--expect", optarg, 1, 65536, &expected))
-			return EXIT_USAGE;
-		options.replace |= option == OPTION_REPLACE;
-		force |= option == OPTION_FORCE;
-		quiet |= option == 'q';
-	}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {{"output", 'o', option_text, .to = &options.output},
+	                                    {"quiet", 'q', option_flag, .to = &quiet},
+	                                    {"replace", 0, option_flag, .to = &options.replace},
+	                                    {"expect", 0, option_integer, &expected, 1, 65536},
+	                                    {"force", 0, option_flag, .to = &force},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (!option_output(self, options.output, "OUT.bpk"))
 		return EXIT_USAGE;
 	if (optind >= argc)
@@ -93,16 +84,17 @@ static int merge_main(const struct command *self, int argc, char **argv)
 		return EXIT_FAILED;
 	}
 	size_t opened = 0;
+	code = EXIT_FAILED;
 	while (opened < count && !bp_archive_open(argv[optind + (int)opened], &archives[opened], &error))
 		opened++;
 	if (opened < count)
 		report_error(argv[optind + (int)opened], NULL, &error);
 	else
-		result = merge_write(archives, argv + optind, count, &options, quiet);
+		code = merge_write(archives, argv + optind, count, &options, quiet);
 	for (size_t n = 0; n < opened; n++)
 		bp_archive_close(archives[n]);
 	free(archives);
-	return result;
+	return code;
 }
 
 const struct command command_merge = {

@@ -13,22 +13,15 @@ static void loss_report(void *user, const char *material, const bp_error *why) {
 
 static int recover_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_FORCE = OPTION_LONG };
-	static const struct option names[] = {
-		{"output", required_argument, NULL, 'o'}, {"force", no_argument, NULL, OPTION_FORCE}, {0}};
 	const char *output = NULL;
 	struct recovery recovery = {0};
 	bool force = false;
 	bp_error error;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "o:", names)) >= 0) {
-		if (option == 'o')
-			output = optarg;
-		force |= option == OPTION_FORCE;
-	}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {
+		{"output", 'o', option_text, .to = &output}, {"force", 0, option_flag, .to = &force}, {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (!option_output(self, output, "OUT.bpk"))
 		return EXIT_USAGE;
 	if (argc - optind != 1)

@@ -64,38 +64,23 @@ static int material_render(const struct render_options *options, const struct ma
 
 static int render_main(const struct command *self, int argc, char **argv)
 {
-	enum { LIGHT = OPTION_LONG, SIZE, FORCE };
-	static const struct option names[] = {{"light", required_argument, NULL, LIGHT},
-	                                      {"size", required_argument, NULL, SIZE},
-	                                      {"output", required_argument, NULL, 'o'},
-	                                      {"force", no_argument, NULL, FORCE},
-	                                      {0}};
-	struct render_options options = {.lighting = LIGHTING_KEY, .size = SPHERE_SIZE};
+	struct render_options options = {.lighting = LIGHTING_KEY};
 	struct material material;
-	int64_t size;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
-		switch (option) {
-		case 'o': options.output = optarg; break;
-		case FORCE: options.force = true; break;
-		case LIGHT:
-			if (!option_light(self, optarg, &options.lighting))
-				return EXIT_USAGE;
-			break;
-		case SIZE:
-			if (!option_integer(self, "--size", optarg, 1, SPHERE_SIZE_MAX, &size))
-				return EXIT_USAGE;
-			options.size = (uint32_t)size;
-			break;
-		}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	int64_t size = SPHERE_SIZE;
+	const struct option_rule rules[] = {{"light", 0, option_light, .to = &options.lighting},
+	                                    {"size", 0, option_integer, &size, 1, SPHERE_SIZE_MAX},
+	                                    {"output", 'o', option_text, .to = &options.output},
+	                                    {"force", 0, option_flag, .to = &options.force},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
+	options.size = (uint32_t)size;
 	if (!option_picture(self, options.output, ".pfm", &options.pfm))
 		return EXIT_USAGE;
 	if (optind < argc && !output_check(options.output, OUTPUT_KIND_PICTURE, options.force, (const char *const *)argv + optind, 1))
 		return EXIT_FAILED;
-	int code = material_load(self, argv + optind, argc - optind, &material);
+	code = material_load(self, argv + optind, argc - optind, &material);
 	if (code != EXIT_OK)
 		return code;
 	code = material_render(&options, &material);

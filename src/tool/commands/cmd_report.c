@@ -9,44 +9,29 @@
 
 static int report_main(const struct command *self, int argc, char **argv)
 {
-	enum { LIGHT = OPTION_LONG, MEASURED, EMBED, FORCE };
-	static const struct option names[] = {
-		{"output", required_argument, NULL, 'o'},  {"measured", required_argument, NULL, MEASURED},
-		{"light", required_argument, NULL, LIGHT}, {"embed", no_argument, NULL, EMBED},
-		{"jobs", required_argument, NULL, 'j'},    {"quiet", no_argument, NULL, 'q'},
-		{"force", no_argument, NULL, FORCE},       {0}};
-	struct page_options options = {.workers = cores_usable(), .lightings = (1u << LIGHTING_COUNT) - 1};
+	struct page_options options = {.workers = cores_usable()};
 	struct selection selection;
-	enum lighting lighting;
+	enum lighting lighting = LIGHTING_COUNT;
 	bool force = false;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "o:j:q", names)) >= 0)
-		switch (option) {
-		case 'o': options.output = optarg; break;
-		case MEASURED: options.measured = optarg; break;
-		case LIGHT:
-			if (!option_light(self, optarg, &lighting))
-				return EXIT_USAGE;
-			options.lightings = 1u << lighting;
-			break;
-		case EMBED: options.embed = true; break;
-		case FORCE: force = true; break;
-		case 'q': options.quiet = true; break;
-		case 'j':
-			if (!option_jobs(self, optarg, &options.workers))
-				return EXIT_USAGE;
-			break;
-		}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {{"output", 'o', option_text, .to = &options.output},
+	                                    {"measured", 0, option_text, .to = &options.measured},
+	                                    {"light", 0, option_light, .to = &lighting},
+	                                    {"embed", 0, option_flag, .to = &options.embed},
+	                                    {"jobs", 'j', option_jobs, .to = &options.workers},
+	                                    {"quiet", 'q', option_flag, .to = &options.quiet},
+	                                    {"force", 0, option_flag, .to = &force},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
+	options.lightings = lightings_of(lighting);
 	if (!option_output(self, options.output, "OUT.html"))
 		return EXIT_USAGE;
 	if (!text_ends_with(options.output, ".html"))
 		return report_usage(self, "-o: '%s' does not end in .html", options.output);
 	if (optind < argc && !output_check(options.output, OUTPUT_KIND_PAGE, force, (const char *const *)argv + optind, 1))
 		return EXIT_FAILED;
-	int code = selection_from(&selection, self, argv + optind, argc - optind);
+	code = selection_from(&selection, self, argv + optind, argc - optind);
 	if (code != EXIT_OK)
 		return code;
 	code = selection.count || !selection.incomplete ? page_run(&options, &selection) : EXIT_FAILED;

@@ -33,8 +33,9 @@ struct show {
 };
 
 /* "5,20,40": 1 to 12 angles of 0 to 90 degrees. */
-static bool angles_parse(const struct command *command, const char *text, struct show_options *options)
+static bool angles_take(const struct command *command, const struct option_rule *rule, const char *text)
 {
+	struct show_options *options = rule->to;
 	options->slice_count = 0;
 	for (const char *at = text;; at++) {
 		char *end;
@@ -170,34 +171,16 @@ static int show_draw(struct show *show, const struct show_options *options)
 
 static int show_main(const struct command *self, int argc, char **argv)
 {
-	enum { THETA_H = OPTION_LONG, MEASURED, PROFILE, FORCE };
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
-	                                      {"theta-h", required_argument, NULL, THETA_H},
-	                                      {"measured", required_argument, NULL, MEASURED},
-	                                      {"profile", required_argument, NULL, PROFILE},
-	                                      {"force", no_argument, NULL, FORCE},
-	                                      {0}};
 	struct show_options options = {.slice_count = 5,
 	                               .theta_h = {5, 20, 40, 60, 80},
 	                               .fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL}};
-	int option;
-
-	while ((option = options_next(self, argc, argv, "o:", names)) >= 0)
-		switch (option) {
-		case 'o': options.output = optarg; break;
-		case FORCE: options.force = true; break;
-		case THETA_H:
-			if (!angles_parse(self, optarg, &options))
-				return EXIT_USAGE;
-			break;
-		case MEASURED: options.reference = optarg; break;
-		case PROFILE:
-			if (!option_profile(self, optarg, &options.fit.profile))
-				return EXIT_USAGE;
-			break;
-		}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {
+		{"output", 'o', option_text, .to = &options.output},    {"theta-h", 0, angles_take, .to = &options},
+		{"measured", 0, option_text, .to = &options.reference}, {"profile", 0, option_profile, .to = &options.fit.profile},
+		{"force", 0, option_flag, .to = &options.force},        {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (!option_picture(self, options.output, ".svg", &options.svg))
 		return EXIT_USAGE;
 	const char *const inputs[2] = {optind < argc ? argv[optind] : NULL, options.reference};
@@ -208,7 +191,7 @@ static int show_main(const struct command *self, int argc, char **argv)
 		report_text("out of memory");
 		return EXIT_FAILED;
 	}
-	int code = material_load(self, argv + optind, argc - optind, &show->material);
+	code = material_load(self, argv + optind, argc - optind, &show->material);
 	if (code == EXIT_OK)
 		code = show_draw(show, &options);
 	density_source_free(&show->measured);

@@ -157,50 +157,41 @@ static int subset_run(struct subset *subset, char **names, int name_count)
 	return result;
 }
 
+static bool scene_take(const struct command *self, const struct option_rule *rule, const char *text)
+{
+	struct subset *subset = rule->to;
+	(void)self;
+	subset->inputs[++subset->scene_count] = text;
+	return true;
+}
+
 static int subset_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_MAX_ERROR = OPTION_LONG, OPTION_SCENE, OPTION_FORCE };
-	static const struct option names[] = {{"output", required_argument, NULL, 'o'},
-	                                      {"quiet", no_argument, NULL, 'q'},
-	                                      {"max-error", required_argument, NULL, OPTION_MAX_ERROR},
-	                                      {"scene", required_argument, NULL, OPTION_SCENE},
-	                                      {"force", no_argument, NULL, OPTION_FORCE},
-	                                      {0}};
 	struct subset subset = {.copy = {.stop = interrupt_came}, .inputs = calloc((size_t)argc + 1, sizeof *subset.inputs)};
-	int option, result;
+	const struct option_rule rules[] = {{"output", 'o', option_text, .to = &subset.copy.output},
+	                                    {"quiet", 'q', option_flag, .to = &subset.quiet},
+	                                    {"max-error", 0, option_number, &subset.copy.max_log_rmse, 1e-6, 10},
+	                                    {"scene", 0, scene_take, .to = &subset},
+	                                    {"force", 0, option_flag, .to = &subset.force},
+	                                    {0}};
 
 	if (!subset.inputs) {
 		report_text("out of memory");
 		return EXIT_FAILED;
 	}
-	while ((option = options_next(self, argc, argv, "o:q", names)) >= 0) {
-		if (option == 'o')
-			subset.copy.output = optarg;
-		else if (option == 'q')
-			subset.quiet = true;
-		else if (option == OPTION_FORCE)
-			subset.force = true;
-		else if (option == OPTION_SCENE)
-			subset.inputs[++subset.scene_count] = optarg;
-		else if (!option_number(self, "--max-error", optarg, 1e-6, 10, &subset.copy.max_log_rmse)) {
-			option = OPTIONS_WRONG;
-			break;
-		}
-	}
-	if (option != OPTIONS_END) {
-		result = options_exit_code(option);
-	} else if (!option_output(self, subset.copy.output, "SCENE.bpk")) {
-		result = EXIT_USAGE;
-	} else if (optind >= argc) {
-		result = report_usage(self, "no archive");
-	} else {
+	int code = options_read(self, argc, argv, rules);
+	if (code == OPTIONS_END && !option_output(self, subset.copy.output, "SCENE.bpk"))
+		code = EXIT_USAGE;
+	if (code == OPTIONS_END && optind >= argc)
+		code = report_usage(self, "no archive");
+	if (code == OPTIONS_END) {
 		subset.path = subset.inputs[0] = argv[optind];
-		result = subset_run(&subset, argv + optind + 1, argc - optind - 1);
+		code = subset_run(&subset, argv + optind + 1, argc - optind - 1);
 	}
 	free(subset.inputs);
 	free(subset.index);
 	scene_words_free(&subset.words);
-	return result;
+	return code;
 }
 
 const struct command command_subset = {

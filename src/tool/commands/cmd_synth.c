@@ -11,13 +11,17 @@
 #include <string.h>
 
 /* "HxDxP", each a whole number. */
-static bool lattice_parse(const char *text, struct lattice_dims *dims)
+static bool lattice_take(const struct command *self, const struct option_rule *rule, const char *text)
 {
+	struct lattice_dims *dims = rule->to;
 	int end = 0;
-	if (strspn(text, "0123456789x") != strlen(text) ||
-	    sscanf(text, "%4ux%4ux%4u%n", &dims->theta_h, &dims->theta_d, &dims->phi_d, &end) != 3 || text[end])
-		return false;
-	return lattice_dims_legal(*dims);
+	if (strspn(text, "0123456789x") == strlen(text) &&
+	    sscanf(text, "%4ux%4ux%4u%n", &dims->theta_h, &dims->theta_d, &dims->phi_d, &end) == 3 && !text[end] &&
+	    lattice_dims_legal(*dims))
+		return true;
+	report_usage(self, "--lattice: '%s' is not HxDxP with 4 to %d cells each, at most %d in all", text, LATTICE_EXTENT_MAX,
+	             LATTICE_CELLS_MAX);
+	return false;
 }
 
 struct synthesis {
@@ -51,26 +55,15 @@ static void material_failed(void *user, uint64_t n, const bp_error *error)
 
 static int synth_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_CLEAN = OPTION_LONG, OPTION_LATTICE, OPTION_FORCE };
-	static const struct option names[] = {{"clean", no_argument, NULL, OPTION_CLEAN},
-	                                      {"lattice", required_argument, NULL, OPTION_LATTICE},
-	                                      {"force", no_argument, NULL, OPTION_FORCE},
-	                                      {0}};
 	struct synthesis synthesis = {.dims = LATTICE_MERL};
 	bool force = false;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "", names)) >= 0) {
-		if (option == OPTION_CLEAN)
-			synthesis.clean = true;
-		else if (option == OPTION_FORCE)
-			force = true;
-		else if (!lattice_parse(optarg, &synthesis.dims))
-			return report_usage(self, "--lattice: '%s' is not HxDxP with 4 to %d cells each, at most %d in all", optarg,
-			                    LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
-	}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {{"clean", 0, option_flag, .to = &synthesis.clean},
+	                                    {"lattice", 0, lattice_take, .to = &synthesis.dims},
+	                                    {"force", 0, option_flag, .to = &force},
+	                                    {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no folder" : "more than one folder");
 	synthesis.folder = argv[optind];

@@ -22,13 +22,11 @@ static int problem_report(void *user, const bp_problem *problem)
 		char text[1024];
 		struct json json = json_begin(stdout, false);
 		error_describe(&problem->error, text, sizeof text);
-		json_object(&json, NULL);
 		if (problem->material)
 			json_string(&json, "name", problem->material);
 		if (problem->error.offset != BP_NO_OFFSET)
 			json_integer(&json, "offset", problem->error.offset);
 		json_string(&json, "error", text);
-		json_close(&json);
 		json_finish(&json);
 	} else {
 		report_error(findings->path, problem->material, &problem->error);
@@ -40,14 +38,12 @@ static void summary_print(const struct findings *findings, uint64_t materials, u
 {
 	if (findings->json) {
 		struct json json = json_begin(stdout, false);
-		json_object(&json, NULL);
 		json_bool(&json, "summary", true);
 		json_string(&json, "archive", findings->path);
 		json_bool(&json, "deep", deep);
 		json_integer(&json, "materials", materials);
 		json_integer(&json, "bytes_read", bytes);
 		json_integer(&json, "problems", findings->count);
-		json_close(&json);
 		json_finish(&json);
 	} else if (findings->count == 0) {
 		printf("%s: %" PRIu64 " material%s%s, no problem found\n", findings->path, materials, materials == 1 ? "" : "s",
@@ -60,21 +56,15 @@ static void summary_print(const struct findings *findings, uint64_t materials, u
 
 static int verify_main(const struct command *self, int argc, char **argv)
 {
-	enum { OPTION_DEEP = OPTION_LONG, OPTION_JSON };
-	static const struct option names[] = {
-		{"deep", no_argument, NULL, OPTION_DEEP}, {"json", no_argument, NULL, OPTION_JSON}, {0}};
 	struct findings findings = {0};
 	bp_archive *archive = NULL;
 	bool deep = false;
 	bp_error error;
-	int option;
-
-	while ((option = options_next(self, argc, argv, "", names)) >= 0) {
-		deep |= option == OPTION_DEEP;
-		findings.json |= option == OPTION_JSON;
-	}
-	if (option != OPTIONS_END)
-		return options_exit_code(option);
+	const struct option_rule rules[] = {
+		{"deep", 0, option_flag, .to = &deep}, {"json", 0, option_flag, .to = &findings.json}, {0}};
+	int code = options_read(self, argc, argv, rules);
+	if (code != OPTIONS_END)
+		return code;
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no archive" : "more than one archive");
 	findings.path = argv[optind];

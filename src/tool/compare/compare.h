@@ -10,9 +10,8 @@
 
 #include <stdio.h>
 
-#include "archive/reader.h"
-#include "merl/source.h"
 #include "render/comparison.h"
+#include "tool/measured.h"
 #include "tool/workers.h"
 
 /* What a worker sends back: this, then the PNG files one after another. */
@@ -25,8 +24,7 @@ struct compare_result {
 
 /* One material that is compared. */
 struct compare_item {
-	struct index_entry entry;
-	const struct source_item *source;
+	const char *name;
 	bool done, failed;
 	bp_error *error; /* of a measurement that failed, until its turn to be reported comes */
 	struct compare_result result;
@@ -35,7 +33,7 @@ struct compare_item {
 /* All that a worker needs; filled before the fork. */
 struct compare_job {
 	const struct bp_archive *archive;
-	const struct compare_item *items;
+	const struct measured_item *items;
 	bool images;
 	struct comparison_plans plans; /* a worker's own from the fork on */
 	struct source_cursor cursor;

@@ -110,8 +110,7 @@ static void json_row(const struct compare_report *report, const struct compare_i
 	const struct worst_cell *worst = &item->result.comparison.worst;
 	const struct energy *decoded = &item->result.comparison.decoded;
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
-	json_string(&json, "name", item->entry.name);
+	json_string(&json, "name", item->name);
 	figures_json(&json, report, values);
 	json_string(&json, "recorded_errors", item->result.confirmed ? "confirmed" : "of another file");
 	json_object(&json, "largest_relative_at");
@@ -127,7 +126,6 @@ static void json_row(const struct compare_report *report, const struct compare_i
 	json_string(&json, "channel", CHANNEL_NAMES[decoded->channel]);
 	json_number(&json, "theta_o", decoded->theta_o);
 	json_close(&json);
-	json_close(&json);
 	json_finish(&json);
 }
 
@@ -138,7 +136,7 @@ void compare_report_row(const struct compare_report *report, const struct compar
 	if (report->json)
 		json_row(report, item, values);
 	else
-		text_row(report, item->entry.name, values, &item->result.comparison.worst);
+		text_row(report, item->name, values, &item->result.comparison.worst);
 }
 
 enum { MEDIAN, WORST, MEAN, SUMMARY_ROWS };
@@ -159,7 +157,6 @@ static void summary_json(const struct compare_report *report, double rows[SUMMAR
                          size_t confirmed, size_t failed)
 {
 	struct json json = json_begin(stdout, false);
-	json_object(&json, NULL);
 	json_bool(&json, "summary", true);
 	json_integer(&json, "materials", used);
 	json_integer(&json, "confirmed", confirmed);
@@ -169,7 +166,6 @@ static void summary_json(const struct compare_report *report, double rows[SUMMAR
 		figures_json(&json, report, rows[r]);
 		json_close(&json);
 	}
-	json_close(&json);
 	json_finish(&json);
 }
 
@@ -206,9 +202,8 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 	if (used && confirmed == count)
 		printf("The errors that the records tell of their layers are confirmed.\n");
 	else if (used)
-		printf("The errors that the records tell of their layers are confirmed for %zu of %zu materials; the others were packed "
-		       "from other "
-		       "files, or failed.\n",
+		printf("The errors that the records tell of their layers are confirmed for %zu of %zu materials; "
+		       "the others were packed from other files, or failed.\n",
 		       confirmed, count);
 	return BP_OK;
 }

@@ -28,7 +28,7 @@ static bp_status result_pack(const struct compare_result *result, uint8_t *const
 	return BP_OK;
 }
 
-static bp_status decoded_load(const struct compare_job *job, const struct compare_item *item, const struct record_head *head,
+static bp_status decoded_load(const struct compare_job *job, const struct measured_item *item, const struct record_head *head,
                               uint32_t layers, struct expansion *table, bp_error *error)
 {
 	struct model *model;
@@ -58,7 +58,7 @@ static bp_status figures_confirm(const struct record_head *head, uint32_t layer,
 }
 
 /* The layers below the last, of which `last` was measured. Uses up the table. */
-static bp_status layers_confirm(const struct compare_job *job, const struct compare_item *item, const struct record_head *head,
+static bp_status layers_confirm(const struct compare_job *job, const struct measured_item *item, const struct record_head *head,
                                 const struct lattice *lattice, const struct fidelity *last, struct expansion *table,
                                 bp_error *error)
 {
@@ -77,7 +77,7 @@ static bp_status layers_confirm(const struct compare_job *job, const struct comp
 bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
 	struct compare_job *compare = user;
-	const struct compare_item *item = &compare->items[job->number];
+	const struct measured_item *item = &compare->items[job->number];
 	struct compare_result result = {.record_bytes = 0};
 	struct picture pictures[LIGHTING_COUNT] = {{0}};
 	uint8_t *png[LIGHTING_COUNT] = {NULL};

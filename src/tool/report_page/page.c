@@ -12,8 +12,8 @@
 #include "page_html.h"
 #include "page_sections.h"
 #include "page_work.h"
+#include "render/base64.h"
 #include "tool/interrupt.h"
-#include "tool/measured.h"
 #include "tool/progress.h"
 #include "tool/report.h"
 #include "tool/whole_file.h"
@@ -24,43 +24,22 @@ enum { SIZE_DETAILS = SPHERE_SIZE, SIZE_SHEET = 40, EMBED_BYTES_MAX = 512 << 20,
 /* The materials of the page while it is made. */
 struct making {
 	struct page page;
-	struct page_item *items;
-	const char **names; /* the items' */
-	struct source_list sources;
 	struct page_job job;
 };
 
-static bp_status items_read(struct making *making, bp_error *error)
+/* Where the index is damaged the materials before that are shown. */
+static bp_status items_read(struct page *page, bp_error *error)
 {
-	struct page *page = &making->page;
-	page->count = (size_t)page->selection->count;
-	making->items = calloc(page->count + 1, sizeof *making->items);
-	making->names = calloc(page->count + 1, sizeof *making->names);
-	page->outcomes = calloc(page->count + 1, sizeof *page->outcomes);
-	page->items = making->items;
-	if (!making->items || !making->names || !page->outcomes)
-		return error_memory(error, page->count * sizeof *making->items);
-	for (size_t n = 0; n < page->count; n++) {
-		making->names[n] = making->items[n].entry.name;
-		if (selection_entry(page->selection, n, &making->items[n].entry, error) !=
-		    BP_OK) { /* the index is damaged: those before are shown */
-			report_error(page->selection->path, NULL, error);
-			page->selection->incomplete = true;
-			page->count = n;
-		}
+	const bp_status status = measured_set_read(page->selection, &page->measured, error);
+	if (status == BP_ERROR_MEMORY)
+		return status;
+	if (status != BP_OK) {
+		report_error(page->selection->path, NULL, error);
+		page->selection->incomplete = true;
 	}
-	return BP_OK;
-}
-
-static bp_status sources_find(struct making *making, bp_error *error)
-{
-	const struct page *page = &making->page;
-	if (!page->options->measured)
-		return BP_OK;
-	bp_status status = measured_find(page->options->measured, making->names, page->count, &making->sources, error);
-	for (size_t n = 0; status == BP_OK && n < page->count; n++)
-		making->items[n].source = source_list_find(&making->sources, making->items[n].entry.name);
-	return status;
+	page->count = page->measured.count;
+	page->outcomes = calloc(page->count + 1, sizeof *page->outcomes);
+	return page->outcomes ? BP_OK : error_memory(error, page->count * sizeof *page->outcomes);
 }
 
 static int problem_note(void *user, const bp_problem *problem)
@@ -68,6 +47,7 @@ static int problem_note(void *user, const bp_problem *problem)
 	struct page *page = user;
 	char text[1024];
 	FILE *out = memory_stream_open(&page->verify);
+	page->problem_count++;
 	if (!out)
 		return 1;
 	error_describe(&problem->error, text, sizeof text);
@@ -79,7 +59,7 @@ static int problem_note(void *user, const bp_problem *problem)
 	html_text(out, text);
 	fputs("</li>\n", out);
 	fclose(out);
-	return ++page->problem_count >= PROBLEMS_MAX;
+	return page->problem_count >= PROBLEMS_MAX;
 }
 
 /* The viewer's part of the page, as `make viewer` leaves it beside the tool and `make install` under share; none is no error. */
@@ -99,42 +79,29 @@ static void viewer_find(struct page *page)
 	}
 }
 
-static char *text_copy(const char *text, size_t bytes)
-{
-	char *copy = malloc(bytes + 1);
-	if (copy) {
-		memcpy(copy, text, bytes);
-		copy[bytes] = '\0';
-	}
-	return copy;
-}
-
 static void result_take(void *user, const struct job_result *result)
 {
 	struct page *page = user;
 	struct page_outcome *outcome = &page->outcomes[result->number];
-	const struct page_item *item = &page->items[result->number];
+	const size_t head = sizeof outcome->result;
 	bp_error error = result->error;
-	if (!error.status && result->record_bytes >= sizeof outcome->result) {
-		const char *text = (const char *)result->record + sizeof outcome->result;
-		memcpy(&outcome->result, result->record, sizeof outcome->result);
-		outcome->sheet = text_copy(text, outcome->result.sheet_bytes);
-		outcome->details = text_copy(text + outcome->result.sheet_bytes, outcome->result.details_bytes);
-		if (!outcome->sheet || !outcome->details)
-			error_memory(&error, result->record_bytes);
+	if (!error.status && result->record_bytes >= head)
+		memcpy(&outcome->result, result->record, head);
+	if (!error.status && result->record_bytes != head + outcome->result.sheet_bytes + outcome->result.details_bytes) {
+		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is not whole");
 	} else if (!error.status) {
-		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is too short");
+		if ((outcome->html = malloc(result->record_bytes - head + 1)))
+			memcpy(outcome->html, result->record + head, result->record_bytes - head);
+		else
+			error_memory(&error, result->record_bytes);
 	}
 	if (error.status) {
 		char text[1024];
-		free(outcome->sheet);
-		outcome->sheet = NULL;
 		error_describe(&error, text, sizeof text);
-		outcome->fault = text_copy(text, strlen(text));
-		report_error(page->selection->path, item->entry.name, &error);
+		outcome->fault = strdup(text);
+		report_error(page->selection->path, page->measured.name[result->number], &error);
 		page->failed++;
 	}
-	outcome->done = true;
 	page->done++;
 	progress_show(page->done, page->count, (double)page->done / (double)page->count);
 }
@@ -145,7 +112,7 @@ static bp_status materials_draw(struct making *making, bp_error *error)
 	const struct page_options *options = page->options;
 	making->job =
 		(struct page_job){.archive = page->selection->archive,
-	                      .items = making->items,
+	                      .items = page->measured.item,
 	                      .details = page->details,
 	                      .measured = options->measured != NULL,
 	                      .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
@@ -156,7 +123,7 @@ static bp_status materials_draw(struct making *making, bp_error *error)
 	bp_status status = selection_dims(page->selection, &dims) ? comparison_plans_make(&making->job.plans, dims, error) : BP_OK;
 	progress_start(!options->quiet);
 	if (status == BP_OK)
-		status = workers_run(&pool, making->names, page->count, error);
+		status = workers_run(&pool, page->measured.name, page->count, error);
 	progress_stop();
 	return status;
 }
@@ -171,7 +138,7 @@ static bp_status archive_embed(FILE *out, const struct page *page, bp_error *err
 		return error_set(error, status, reason.offset, "%s: %s%s", page->selection->path, reason.message,
 		                 status == BP_ERROR_LIMIT ? " do not fit into a page; serve it beside the page instead" : "");
 	fputs("<script type=\"application/x-brdfpack\" id=embedded>", out);
-	html_base64(out, (const uint8_t *)bytes, count);
+	base64_write(out, (const uint8_t *)bytes, count);
 	fputs("</script>\n", out);
 	free(bytes);
 	return BP_OK;
@@ -207,8 +174,8 @@ static bp_status page_write(const struct page *page, struct output *output, bp_e
 	if (page->details && page->count)
 		fputs("<section id=details aria-labelledby=details-h><h2 id=details-h>Each material</h2>\n", out);
 	for (size_t n = 0; page->details && n < page->count; n++)
-		if (page->outcomes[n].sheet)
-			fwrite(page->outcomes[n].details, 1, page->outcomes[n].result.details_bytes, out);
+		if (page->outcomes[n].html)
+			fwrite(page->outcomes[n].html + page->outcomes[n].result.sheet_bytes, 1, page->outcomes[n].result.details_bytes, out);
 	if (page->details && page->count)
 		fputs("</section>\n", out);
 	page_end_write(out);
@@ -224,16 +191,13 @@ static void making_free(struct making *making)
 {
 	struct page *page = &making->page;
 	for (size_t n = 0; page->outcomes && n < page->count; n++) {
-		free(page->outcomes[n].sheet);
-		free(page->outcomes[n].details);
+		free(page->outcomes[n].html);
 		free(page->outcomes[n].fault);
 	}
 	free(page->outcomes);
-	free(making->items);
-	free(making->names);
 	free(page->viewer);
 	byte_buffer_free(&page->verify);
-	source_list_free(&making->sources);
+	measured_set_free(&page->measured);
 	comparison_plans_free(&making->job.plans);
 }
 
@@ -247,13 +211,13 @@ int page_run(const struct page_options *options, struct selection *selection)
 	page->details = selection->count <= PAGE_DETAILS_MAX;
 	page->archive_bytes = stat(selection->path, &facts) == 0 ? (uint64_t)facts.st_size : 0;
 	viewer_find(page);
-	bp_status status = items_read(&making, &error);
+	bp_status status = items_read(page, &error);
 	if (status == BP_OK && options->embed && !page->viewer)
 		status = error_set(&error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                   "--embed: the viewer is not there, so nothing could read the archive; `make viewer` builds it (Debian "
-		                   "package emscripten)");
-	if (status == BP_OK)
-		status = sources_find(&making, &error);
+		                   "--embed: the viewer is not there, so nothing could read the archive; "
+		                   "`make viewer` builds it (Debian package emscripten)");
+	if (status == BP_OK && options->measured)
+		status = measured_set_find(&page->measured, options->measured, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */
 		status = output_file_open(options->output, OUTPUT_REPLACE, &output.file, &error);
 	if (status == BP_OK) {

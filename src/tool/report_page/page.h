@@ -5,7 +5,7 @@
  *     page_work.c      in the worker: one material -> its part of the page
  *     page_plots.c     line plots as SVG, in the page's own colours
  *     page_sections.c  the parts that are about the archive: heading, scatter plot, worst ten, what verify said
- *     page.css, page.js  how it looks; filter and sort. page_style.h has them as text.
+ *     page.css, page.js  how it looks; filter and sort. page_assets.inc has them as text.
  */
 #ifndef TOOL_REPORT_PAGE_PAGE_H
 #define TOOL_REPORT_PAGE_PAGE_H

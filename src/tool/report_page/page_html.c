@@ -1,8 +1,10 @@
 #include "page_html.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
 
 #include "name.h"
+#include "render/base64.h"
 
 void html_text(FILE *out, const char *string)
 {
@@ -33,17 +35,14 @@ void html_name(FILE *out, const char *name)
 	fputs("</bdi>", out);
 }
 
-void html_base64(FILE *out, const uint8_t *bytes, size_t count)
+void html_table(FILE *out, const char *caption, ...)
 {
-	static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-	for (size_t n = 0; n < count; n += 3) {
-		const size_t left = count - n;
-		const uint32_t triple =
-			(uint32_t)bytes[n] << 16 | (left > 1 ? (uint32_t)bytes[n + 1] << 8 : 0) | (left > 2 ? bytes[n + 2] : 0);
-		const char four[4] = {DIGITS[triple >> 18], DIGITS[triple >> 12 & 63], left > 1 ? DIGITS[triple >> 6 & 63] : '=',
-		                      left > 2 ? DIGITS[triple & 63] : '='};
-		fwrite(four, 1, sizeof four, out);
-	}
+	va_list columns;
+	fprintf(out, "<table><caption>%s</caption><thead><tr>", caption);
+	va_start(columns, caption);
+	for (const char *column; (column = va_arg(columns, const char *));)
+		fprintf(out, "%s%s", *column ? "<th scope=col>" : "<td>", column);
+	va_end(columns);
 }
 
 bp_status html_picture(FILE *out, const struct picture *picture, const char *style, const char *alt, bp_error *error)
@@ -56,7 +55,7 @@ bp_status html_picture(FILE *out, const struct picture *picture, const char *sty
 	fprintf(out, "<img class=\"%s\" loading=lazy width=%u height=%u alt=\"", style, picture->width, picture->height);
 	html_text(out, alt);
 	fputs("\" src=\"data:image/png;base64,", out);
-	html_base64(out, png, bytes);
+	base64_write(out, png, bytes);
 	fputs("\">", out);
 	free(png);
 	return BP_OK;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "page_html.h"
+#include "tool/facts.h"
 
 static const double DEGREE = M_PI / 180;
 
@@ -34,6 +35,15 @@ static int samples_place(double incident, double *degrees)
 	return count;
 }
 
+/* A line's key below its plot. */
+static void key_write(FILE *out, const char *line, int number, const char *text)
+{
+	fprintf(out,
+	        " <span class=key><svg viewBox=\"0 0 24 8\" aria-hidden=true>"
+	        "<path class=\"line %s%d\" d=\"M0 4H24\"/></svg>%s</span>",
+	        line, number, text);
+}
+
 static void polar_grid(FILE *out, int top)
 {
 	fprintf(out, "<path class=axis d=\"M%d %d H%d\"/>", -RADIUS, 0, RADIUS);
@@ -50,52 +60,56 @@ static void polar_grid(FILE *out, int top)
 
 void plot_polar(FILE *out, const struct table *table)
 {
-	double degrees[INCIDENT_COUNT][SAMPLES_MAX], value[INCIDENT_COUNT][SAMPLES_MAX], peak[INCIDENT_COUNT] = {0},
-																					 peak_at[INCIDENT_COUNT] = {0};
-	int count[INCIDENT_COUNT];
+	struct curve {
+		int count;
+		double degrees[SAMPLES_MAX], value[SAMPLES_MAX], peak, peak_at;
+	} curves[INCIDENT_COUNT];
 	double largest = 1e-30;
 	for (int i = 0; i < INCIDENT_COUNT; i++) {
-		count[i] = samples_place(INCIDENT[i], degrees[i]);
-		for (int n = 0; n < count[i]; n++) {
-			value[i][n] = scattered(table, INCIDENT[i] * DEGREE, degrees[i][n] * DEGREE);
-			if (value[i][n] > peak[i]) {
-				peak[i] = value[i][n];
-				peak_at[i] = degrees[i][n];
+		struct curve *curve = &curves[i];
+		curve->peak = curve->peak_at = 0;
+		curve->count = samples_place(INCIDENT[i], curve->degrees);
+		for (int n = 0; n < curve->count; n++) {
+			curve->value[n] = scattered(table, INCIDENT[i] * DEGREE, curve->degrees[n] * DEGREE);
+			if (curve->value[n] > curve->peak) {
+				curve->peak = curve->value[n];
+				curve->peak_at = curve->degrees[n];
 			}
 		}
-		largest = fmax(largest, peak[i]);
+		largest = fmax(largest, curve->peak);
 	}
 	const int top = (int)ceil(log10(largest));
 	fputs("<figure class=plot><svg viewBox=\"-175 -170 350 190\" role=img aria-label=\"Polar plot of f cos theta_o, logarithmic.",
 	      out);
 	for (int i = 0; i < INCIDENT_COUNT; i++)
-		fprintf(out, " Light from %d degrees: largest %.3g per steradian at %.1f degrees.", INCIDENT[i], peak[i], peak_at[i]);
+		fprintf(out, " Light from %d degrees: largest %.3g per steradian at %.1f degrees.", INCIDENT[i], curves[i].peak,
+		        curves[i].peak_at);
 	fputs("\">", out);
 	polar_grid(out, top);
 	for (int i = 0; i < INCIDENT_COUNT; i++) {
 		fprintf(out, "<path class=\"line l%d\" d=\"", i);
-		for (int n = 0; n < count[i]; n++) {
-			double share = value[i][n] > 0 ? (log10(value[i][n]) - top + DECADES) / DECADES : 0, r = RADIUS * fmax(0, share);
-			fprintf(out, "%s%.1f %.1f", n ? "L" : "M", r * sin(degrees[i][n] * DEGREE), -r * cos(degrees[i][n] * DEGREE));
+		for (int n = 0; n < curves[i].count; n++) {
+			const double value = curves[i].value[n], angle = curves[i].degrees[n] * DEGREE;
+			const double r = value > 0 ? RADIUS * fmax(0, (log10(value) - top + DECADES) / DECADES) : 0;
+			fprintf(out, "%s%.1f %.1f", n ? "L" : "M", r * sin(angle), -r * cos(angle));
 		}
 		fputs("\"/>", out);
 	}
 	fputs("</svg><figcaption>f cos θ<sub>o</sub> in 1/sr, mean of the channels; light from θ<sub>i</sub> =", out);
-	for (int i = 0; i < INCIDENT_COUNT; i++)
-		fprintf(out,
-		        " <span class=key><svg viewBox=\"0 0 24 8\" aria-hidden=true><path class=\"line l%d\" d=\"M0 "
-		        "4H24\"/></svg>%d°</span>",
-		        i, INCIDENT[i]);
+	for (int i = 0; i < INCIDENT_COUNT; i++) {
+		char text[16];
+		snprintf(text, sizeof text, "%d°", INCIDENT[i]);
+		key_write(out, "l", i, text);
+	}
 	fputs("</figcaption></figure>", out);
 }
 
 void plot_albedo(FILE *out, const struct energy *energy)
 {
-	static const char *const CHANNEL[3] = {"red", "green", "blue"};
 	const double top = fmax(1, ceil(energy->largest * 5) / 5), width = 300, height = 150;
 	fputs("<figure class=plot><svg viewBox=\"-30 -10 345 185\" role=img aria-label=\"Directional albedo.", out);
 	for (int c = 0; c < 3; c++)
-		fprintf(out, " %s: %.3f at 0 degrees, %.3f at 60, %.3f at 85.", CHANNEL[c], energy->albedo[0][c],
+		fprintf(out, " %s: %.3f at 0 degrees, %.3f at 60, %.3f at 85.", CHANNEL_NAMES[c], energy->albedo[0][c],
 		        energy->albedo[60 / ENERGY_STEP_DEGREES][c], energy->albedo[ENERGY_DIRECTIONS - 1][c]);
 	fputs("\">", out);
 	for (int n = 0; n <= 4; n++)
@@ -114,10 +128,7 @@ void plot_albedo(FILE *out, const struct energy *energy)
 	}
 	fputs("</svg><figcaption>directional albedo over θ<sub>o</sub>:", out);
 	for (int c = 0; c < 3; c++)
-		fprintf(
-			out,
-			" <span class=key><svg viewBox=\"0 0 24 8\" aria-hidden=true><path class=\"line c%d\" d=\"M0 4H24\"/></svg>%s</span>",
-			c, CHANNEL[c]);
+		key_write(out, "c", c, CHANNEL_NAMES[c]);
 	fputs("</figcaption></figure>", out);
 }
 
@@ -167,9 +178,9 @@ void plot_ladders(FILE *out, const struct plot_ladder *ladders, size_t count)
 	const struct axis x = axis_over(bytes_least, bytes_most, &x_first, &x_last),
 					  y = axis_over(error_least, error_most, &y_first, &y_last);
 	fprintf(out,
-	        "<figure class=plot><svg class=wide viewBox=\"-50 -10 700 345\" role=img aria-label=\"Bytes against log RMSE of %zu "
-	        "materials, both "
-	        "logarithmic: %.0f to %.0f bytes, log RMSE %.3g to %.3g. The figures are in the table of each material.\">",
+	        "<figure class=plot><svg class=wide viewBox=\"-50 -10 700 345\" role=img "
+	        "aria-label=\"Bytes against log RMSE of %zu materials, both logarithmic: %.0f to %.0f bytes, log RMSE %.3g to %.3g. "
+	        "The figures are in the table of each material.\">",
 	        count, bytes_least, bytes_most, error_least, error_most);
 	for (int n = x_first; n <= x_last; n++) {
 		const double at = width * axis_at(x, axis_step(n));
@@ -184,22 +195,22 @@ void plot_ladders(FILE *out, const struct plot_ladder *ladders, size_t count)
 	fprintf(out, "<text class=tick x=%.0f y=%.0f>bytes</text><text class=\"tick start\" x=4 y=10>log RMSE</text>", width / 2,
 	        height + 30);
 	for (size_t m = 0; m < count; m++) {
-		fputs("<g class=ladder><title>", out);
-		html_text(out, ladders[m].name);
-		fputs("</title><path class=\"line faint\" d=\"", out);
+		const struct plot_ladder *ladder = &ladders[m];
 		bool open = false;
-		for (uint32_t l = 0; l < ladders[m].count; l++)
-			if (ladders[m].error[l] > 0) {
-				fprintf(out, "%s%.1f %.1f", open ? "L" : "M", width * axis_at(x, ladders[m].bytes[l]),
-				        height * (1 - axis_at(y, fmax(error_least, ladders[m].error[l]))));
+		fputs("<g class=ladder><title>", out);
+		html_text(out, ladder->name);
+		fputs("</title><path class=\"line faint\" d=\"", out);
+		for (int marks = 0; marks < 2; marks++) {
+			for (uint32_t l = 0; l < ladder->count; l++) {
+				const double at = width * axis_at(x, ladder->bytes[l]),
+							 up = height * (1 - axis_at(y, fmax(error_least, ladder->error[l])));
+				if (!(ladder->error[l] > 0))
+					continue;
+				fprintf(out, marks ? "<circle class=mark cx=%.1f cy=%.1f r=2.5 />" : open ? "L%.1f %.1f" : "M%.1f %.1f", at, up);
 				open = true;
 			}
-		fputs("\"/>", out);
-		for (uint32_t l = 0; l < ladders[m].count; l++)
-			if (ladders[m].error[l] > 0)
-				fprintf(out, "<circle class=mark cx=%.1f cy=%.1f r=2.5 />", width * axis_at(x, ladders[m].bytes[l]),
-				        height * (1 - axis_at(y, fmax(error_least, ladders[m].error[l]))));
-		fputs("</g>", out);
+			fputs(marks ? "</g>" : "\"/>", out);
+		}
 	}
 	fputs("</svg><figcaption>bytes against error of every material: a line goes from layer to layer</figcaption></figure>", out);
 }

@@ -10,8 +10,9 @@
 #include <stdio.h>
 
 /*
- * Polar plot in the plane of incidence: mean over the channels of f cos theta_o for light from theta_i = 0, 30, 60, 80 degrees, theta_o in
- * steps of 1 degree and of 0.1 around the mirror direction; the radius is its logarithm, five decades below the largest.
+ * Polar plot in the plane of incidence: mean over the channels of f cos theta_o for light from theta_i = 0, 30, 60, 80 degrees,
+ * theta_o in steps of 1 degree and of 0.1 around the mirror direction; the radius is its logarithm, five decades below the
+ * largest.
  */
 void plot_polar(FILE *out, const struct table *table);
 

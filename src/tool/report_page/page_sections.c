@@ -1,6 +1,7 @@
 #include "page_sections.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,11 +48,17 @@ void page_head_write(FILE *out, const struct page *page)
 
 static void controls_write(FILE *out)
 {
-	fputs("<form id=controls class=controls hidden role=search><label>name contains <input type=search id=filter "
-	      "autocomplete=off></label>"
-	      " <label>sort by <select id=sort><option value=name>name<option value=bytes>bytes<option value=error>error (log RMSE)"
-	      "<option value=albedo>largest albedo<option value=colour>colour</select></label>"
-	      " <label><input type=checkbox id=down> largest first</label> <span id=shown role=status></span></form>\n",
+	fputs("<form id=controls class=controls hidden role=search>"
+	      "<label>name contains <input type=search id=filter autocomplete=off></label> "
+	      "<label>sort by <select id=sort>"
+	      "<option value=name>name"
+	      "<option value=bytes>bytes"
+	      "<option value=error>error (log RMSE)"
+	      "<option value=albedo>largest albedo"
+	      "<option value=colour>colour"
+	      "</select></label> "
+	      "<label><input type=checkbox id=down> largest first</label> "
+	      "<span id=shown role=status></span></form>\n",
 	      out);
 }
 
@@ -63,24 +70,24 @@ void page_sheet_write(FILE *out, const struct page *page)
 		return;
 	}
 	controls_write(out);
-	fputs("<p class=note>Under each sphere: the record's bytes, and its log RMSE against the measured table, over the cells that "
-	      "can be seen (those wholly below the horizon are left out).",
+	fputs("<p class=note>Under each sphere: the record's bytes, and its log RMSE against the measured table, "
+	      "over the cells that can be seen (those wholly below the horizon are left out).",
 	      out);
 	if (!page->details)
-		fputs(" With so many materials this page shows no more of each; <code>brdfpack report ARCHIVE NAME…</code> shows all of "
-		      "those that are named.",
+		fputs(" With so many materials this page shows no more of each; "
+		      "<code>brdfpack report ARCHIVE NAME…</code> shows all of those that are named.",
 		      out);
 	fputs("</p>\n<ul class=sheet>\n", out);
 	for (size_t n = 0; n < page->count; n++) {
 		const struct page_outcome *outcome = &page->outcomes[n];
-		if (outcome->sheet) {
-			fwrite(outcome->sheet, 1, outcome->result.sheet_bytes, out);
+		if (outcome->html) {
+			fwrite(outcome->html, 1, outcome->result.sheet_bytes, out);
 			continue;
 		}
 		fputs("<li class=\"tile missing\" data-name=\"", out);
-		html_text(out, page->items[n].entry.name);
+		html_text(out, page->measured.name[n]);
 		fputs("\"><span class=\"ball hole\" aria-hidden=true>?</span><span class=name>", out);
-		html_name(out, page->items[n].entry.name);
+		html_name(out, page->measured.name[n]);
 		fputs("</span><small>missing: ", out);
 		html_text(out, outcome->fault ? outcome->fault : "not decoded");
 		fputs("</small></li>\n", out);
@@ -103,21 +110,19 @@ static int worse_first(const void *a, const void *b)
 static void worst_write(FILE *out, const struct page *page, const struct page_outcome **order, size_t count)
 {
 	bool compared = false;
+	char caption[64];
 	qsort(order, count, sizeof *order, worse_first);
 	for (size_t n = 0; n < count; n++)
 		compared |= order[n]->result.measured;
-	fprintf(out,
-	        "<table><caption>The %zu with the largest error</caption><thead><tr><th scope=col>material<th scope=col>bytes<th "
-	        "scope=col>log RMSE"
-	        "<th scope=col>largest albedo",
-	        count < WORST_COUNT ? count : WORST_COUNT);
+	snprintf(caption, sizeof caption, "The %zu with the largest error", count < WORST_COUNT ? count : WORST_COUNT);
+	html_table(out, caption, "material", "bytes", "log RMSE", "largest albedo", NULL);
 	for (int l = 0; compared && l < LIGHTING_COUNT; l++)
 		if (page->options->lightings >> l & 1)
 			fprintf(out, "<th scope=col>PSNR %s (dB)", lighting_name((enum lighting)l));
 	fputs("</tr></thead><tbody>", out);
 	for (size_t n = 0; n < count && n < WORST_COUNT; n++) {
 		const struct page_outcome *outcome = order[n];
-		const struct page_item *item = &page->items[outcome - page->outcomes];
+		const struct measured_item *item = &page->measured.item[outcome - page->outcomes];
 		fputs("<tr><th scope=row>", out);
 		if (page->details)
 			fprintf(out, "<a href=\"#m%llu\">", (unsigned long long)item->entry.ordinal);
@@ -125,9 +130,10 @@ static void worst_write(FILE *out, const struct page *page, const struct page_ou
 		fprintf(out, "%s<td>%u<td>%.5f<td>%.3f", page->details ? "</a>" : "", outcome->result.record_bytes, last_error(outcome),
 		        outcome->result.albedo);
 		for (int l = 0; compared && l < LIGHTING_COUNT; l++)
-			if (page->options->lightings >> l & 1)
-				outcome->result.compared[l] ? fprintf(out, "<td>%.2f", outcome->result.psnr[l])
-											: fprintf(out, "<td>not compared");
+			if (outcome->result.compared[l])
+				fprintf(out, "<td>%.2f", outcome->result.psnr[l]);
+			else if (page->options->lightings >> l & 1)
+				fputs("<td>not compared", out);
 		fputs("</tr>", out);
 	}
 	fputs("</tbody></table>\n", out);
@@ -141,9 +147,9 @@ void page_archive_write(FILE *out, const struct page *page)
 	fputs("<section id=archive aria-labelledby=archive-h><h2 id=archive-h>The archive</h2>\n", out);
 	for (size_t n = 0; order && ladders && n < page->count; n++) {
 		const struct page_outcome *outcome = &page->outcomes[n];
-		if (!outcome->sheet)
+		if (!outcome->html)
 			continue;
-		ladders[count] = (struct plot_ladder){page->items[n].entry.name, outcome->result.layer_count, outcome->result.layer_bytes,
+		ladders[count] = (struct plot_ladder){page->measured.name[n], outcome->result.layer_count, outcome->result.layer_bytes,
 		                                      outcome->result.layer_error};
 		order[count++] = outcome;
 	}
@@ -154,9 +160,9 @@ void page_archive_write(FILE *out, const struct page *page)
 	free(order);
 	free(ladders);
 	fprintf(out,
-	        "<section id=verify aria-labelledby=verify-h><h3 id=verify-h>What verify said</h3><p>All checksums, the index and "
-	        "the order of the names "
-	        "were checked, and %zu of %zu materials decoded for this page: %s</p>",
+	        "<section id=verify aria-labelledby=verify-h><h3 id=verify-h>What verify said</h3>"
+	        "<p>All checksums, the index and the order of the names were checked, "
+	        "and %zu of %zu materials decoded for this page: %s</p>",
 	        page->count - page->failed, page->count, page->problem_count || page->failed ? "" : "no problem found.");
 	if (page->problem_count) {
 		fputs("<ul>", out);

@@ -9,17 +9,16 @@
 
 /* What became of one material. */
 struct page_outcome {
-	bool done;
 	struct page_result result;
-	char *sheet, *details; /* HTML: lengths are in result; NULL where it failed */
-	char *fault;           /* else: why, as report_error says it */
+	char *html;  /* its item of the contact sheet, then its details: lengths are in result; NULL where it failed */
+	char *fault; /* else: why, as report_error says it */
 };
 
 /* Everything the page is made of. */
 struct page {
 	const struct page_options *options;
 	struct selection *selection;
-	const struct page_item *items;
+	struct measured_set measured;
 	struct page_outcome *outcomes;
 	size_t count, done, failed;
 	bool details;

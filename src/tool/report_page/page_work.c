@@ -14,7 +14,7 @@
 
 /* What is known of the material while its part of the page is made. */
 struct subject {
-	const struct page_item *item;
+	const struct measured_item *item;
 	struct record_head head;
 	struct model *model;
 	struct expansion table;
@@ -39,16 +39,6 @@ static const char *lighting_label(int lighting)
 {
 	static const char *const LABEL[LIGHTING_COUNT] = {"29 directional lights", "a sky with one window", "4 point lights"};
 	return LABEL[lighting];
-}
-
-static bp_status decoded_load(const struct page_job *job, struct subject *subject, bp_error *error)
-{
-	bp_status status = archive_entry_head(job->archive, &subject->item->entry, &subject->head, error);
-	if (status == BP_OK)
-		status = archive_entry_load(job->archive, &subject->item->entry, &subject->head, 0, &subject->model, error);
-	if (status == BP_OK)
-		status = model_expand(subject->model, 0, &subject->table, error);
-	return status;
 }
 
 /* Spheres and albedo of the decoded table alone. */
@@ -177,8 +167,8 @@ static bp_status spheres_write(FILE *out, const struct subject *subject, bp_erro
 		fprintf(out, "<figure class=light-%s>", lighting_name((enum lighting)l));
 		if (subject->measured)
 			snprintf(alt, sizeof alt,
-			         "%s under %s: measured, decoded, and their difference times ten; PSNR %.2f dB, mean colour difference %.3g "
-			         "dE ITP",
+			         "%s under %s: measured, decoded, and their difference times ten; "
+			         "PSNR %.2f dB, mean colour difference %.3g dE ITP",
 			         subject->head.name, lighting_label(l), subject->comparison.psnr[l].real, subject->comparison.itp[l]);
 		else
 			snprintf(alt, sizeof alt, "sphere of %s under %s", subject->head.name, lighting_label(l));
@@ -231,11 +221,9 @@ static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t 
 static void layers_write(FILE *out, const struct subject *subject)
 {
 	const struct record_head *head = &subject->head;
-	fputs("<table><caption>Layers: what loading up to each costs, and the error that is left</caption><thead><tr><th "
-	      "scope=col>layer<th scope=col>bytes"
-	      "<th scope=col>log RMSE<th scope=col>below the horizon too<th scope=col>cube-root RMSE<th scope=col>largest relative "
-	      "error</tr></thead><tbody>",
-	      out);
+	html_table(out, "Layers: what loading up to each costs, and the error that is left", "layer", "bytes", "log RMSE",
+	           "below the horizon too", "cube-root RMSE", "largest relative error", NULL);
+	fputs("</tr></thead><tbody>", out);
 	for (uint32_t l = 0; l < head->layer_count; l++)
 		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.5f<td>%.3g</tr>", l + 1, head->layers[l].bytes,
 		        head->layers[l].fidelity.seen_log_rmse, head->layers[l].fidelity.log_rmse,
@@ -243,9 +231,13 @@ static void layers_write(FILE *out, const struct subject *subject)
 	fputs("</tbody></table>", out);
 }
 
-static void swatch_write(FILE *out, const double rgb[3], double white)
+/* A row: the three numbers, and what they look like beside `white`. */
+static void colour_write(FILE *out, const char *what, const double rgb[3], double white)
 {
-	fputs("<span class=swatch style=\"background:rgb(", out);
+	fprintf(out, "<tr><th scope=row>%s", what);
+	for (int c = 0; c < 3; c++)
+		fprintf(out, "<td>%.4f", rgb[c]);
+	fputs("<td><span class=swatch style=\"background:rgb(", out);
 	for (int c = 0; c < 3; c++)
 		fprintf(out, "%s%.0f", c ? "," : "", 255 * image_srgb(rgb[c] / white));
 	fputs(")\"></span>", out);
@@ -256,20 +248,10 @@ static void colours_write(FILE *out, const struct subject *subject)
 	const struct colour_fit *fit = subject->head.colour;
 	const double diffuse[3] = {fit[0].diffuse, fit[1].diffuse, fit[2].diffuse},
 				 specular[3] = {fit[0].specular, fit[1].specular, fit[2].specular};
-	const double most = fmax(1e-30, fmax(specular[0], fmax(specular[1], specular[2])));
-	fputs("<table><caption>Parameters of the robust regression</caption><thead><tr><td><th scope=col>red<th scope=col>green<th "
-	      "scope=col>blue"
-	      "<th scope=col>as colour</tr></thead><tbody><tr><th scope=row>diffuse (1/sr)",
-	      out);
-	for (int c = 0; c < 3; c++)
-		fprintf(out, "<td>%.4f", diffuse[c]);
-	fputs("<td>", out);
-	swatch_write(out, diffuse, 1 / M_PI);
-	fputs("<tr><th scope=row>specular (ratio)", out);
-	for (int c = 0; c < 3; c++)
-		fprintf(out, "<td>%.4f", specular[c]);
-	fputs("<td>", out);
-	swatch_write(out, specular, most);
+	html_table(out, "Parameters of the robust regression", "", "red", "green", "blue", "as colour", NULL);
+	fputs("</tr></thead><tbody>", out);
+	colour_write(out, "diffuse (1/sr)", diffuse, 1 / M_PI);
+	colour_write(out, "specular (ratio)", specular, fmax(1e-30, fmax(specular[0], fmax(specular[1], specular[2]))));
 	fputs("</tbody></table>", out);
 }
 
@@ -277,9 +259,11 @@ static void source_write(FILE *out, const struct subject *subject)
 {
 	const struct record_head *head = &subject->head;
 	fprintf(out,
-	        "<table class=facts><caption>The record and its source</caption><tbody><tr><th scope=row>profile<td>%s, codec "
-	        "version %u<tr><th scope=row>lattice"
-	        "<td>%u × %u × %u cells<tr><th scope=row>record<td>%u bytes, of which %u are its head<tr><th scope=row>made with<td>",
+	        "<table class=facts><caption>The record and its source</caption><tbody>"
+	        "<tr><th scope=row>profile<td>%s, codec version %u"
+	        "<tr><th scope=row>lattice<td>%u × %u × %u cells"
+	        "<tr><th scope=row>record<td>%u bytes, of which %u are its head"
+	        "<tr><th scope=row>made with<td>",
 	        profile_name(head->profile), head->codec_version, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d,
 	        head->record_bytes, head->head_bytes);
 	char holes[80] = "";
@@ -290,8 +274,9 @@ static void source_write(FILE *out, const struct subject *subject)
 	else
 		fprintf(out, "a budget of %u bytes", head->options.budget_bytes);
 	fprintf(out,
-	        ", effort %d<tr><th scope=row>measured file<td>%llu bytes, %llu cells not finite%s<tr><th scope=row>its "
-	        "SHA-256<td><code>",
+	        ", effort %d"
+	        "<tr><th scope=row>measured file<td>%llu bytes, %llu cells not finite%s"
+	        "<tr><th scope=row>its SHA-256<td><code>",
 	        head->options.effort, (unsigned long long)head->source.bytes, (unsigned long long)head->source.nonfinite_count,
 	        holes);
 	for (int n = 0; n < SHA256_BYTES; n++)
@@ -364,7 +349,7 @@ bp_status page_work(void *user, const struct job *job, int fd, uint8_t **record,
 	memset(&result, 0, sizeof result); /* padding too: it travels between processes as bytes */
 	if (page->measured && !subject.item->source)
 		snprintf(subject.missing, sizeof subject.missing, "not compared: there is no measured file of that name");
-	status = decoded_load(page, &subject, error);
+	status = material_decode(page->archive, &subject.item->entry, &subject.head, &subject.model, &subject.table, error);
 	if (status == BP_OK)
 		status = subject.item->source ? measured_draw(page, &subject, error) : decoded_draw(page, &subject, error);
 	if (status != BP_OK)

@@ -2,16 +2,10 @@
 #ifndef TOOL_REPORT_PAGE_PAGE_WORK_H
 #define TOOL_REPORT_PAGE_PAGE_WORK_H
 
-#include "merl/source.h"
 #include "page.h"
 #include "render/comparison.h"
+#include "tool/measured.h"
 #include "tool/workers.h"
-
-/* One material of the page. */
-struct page_item {
-	struct index_entry entry;
-	const struct source_item *source; /* its measured file, or NULL */
-};
 
 /* What a worker sends back: this, then the HTML of the contact sheet's item, then that of the details. */
 struct page_result {
@@ -29,7 +23,7 @@ struct page_result {
 /* All that a worker needs; filled before the fork. */
 struct page_job {
 	const struct bp_archive *archive;
-	const struct page_item *items;
+	const struct measured_item *items;
 	bool details, measured;        /* measured files were asked for */
 	struct comparison_plans plans; /* a worker's own from the fork on */
 	struct source_cursor cursor;
