@@ -39,7 +39,8 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 		return interrupt_exit(options->output);
 	if (!quiet) {
 		report_remark(options->output, &error);
-		printf("%s: %" PRIu64 " material%s", options->output, totals.copied, totals.copied == 1 ? "" : "s");
+		text_print(options->output, 0);
+		printf(": %" PRIu64 " material%s", totals.copied, totals.copied == 1 ? "" : "s");
 		if (totals.replaced > 0)
 			printf(", %" PRIu64 " replaced by a later archive's", totals.replaced);
 		putchar('\n');

@@ -33,7 +33,8 @@ static int recover_main(const struct command *self, int argc, char **argv)
 		return EXIT_FAILED;
 	}
 	report_remark(output, &error);
-	printf("%s: %" PRIu64 " saved, %" PRIu64 " lost\n", output, recovery.saved, recovery.lost);
+	text_print(output, 0);
+	printf(": %" PRIu64 " saved, %" PRIu64 " lost\n", recovery.saved, recovery.lost);
 	return recovery.lost ? EXIT_FAILED : EXIT_OK;
 }
 

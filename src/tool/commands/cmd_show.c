@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "merl/merl_file.h"
+#include "merl/sha256.h"
 #include "render/figure.h"
 
 #include <math.h>
@@ -52,17 +53,24 @@ static bool angles_take(const struct command *command, const struct option_rule 
 	}
 }
 
-/* The measured file that belongs to an archived material: the path itself, or NAME.binary in that folder. */
-static bp_status reference_read(const char *path, const char *name, enum zeros_rule zeros, struct lattice *out, bp_error *error)
+/* The measured file that belongs to an archived material: the path itself, or NAME.binary in that folder. Another one than was packed is told. */
+static bp_status reference_read(const char *path, const struct record_head *head, struct lattice *out, bp_error *error)
 {
+	struct sha256 sha;
+	uint8_t digest[32];
 	struct stat status;
 	char *file = NULL;
 	bp_error reason;
-	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && asprintf(&file, "%s/%s.binary", path, name) < 0)
+	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && asprintf(&file, "%s/%s.binary", path, head->name) < 0)
 		return error_memory(error, 512);
-	bp_status result = lattice_read_path(file ? file : path, &(struct merl_reading){.any_dims = true}, out, &reason);
+	sha256_start(&sha);
+	bp_status result = lattice_read_path(
+		file ? file : path, &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, out, &reason);
+	sha256_finish(&sha, digest);
+	if (result == BP_OK && memcmp(digest, head->source.sha256, sizeof digest) != 0)
+		report_warning(file ? file : path, head->name, "not the file that was packed: its SHA-256 is another");
 	struct holes holes;
-	if (result == BP_OK && (result = lattice_take_holes(out, zeros, &holes, &reason)) != BP_OK)
+	if (result == BP_OK && (result = lattice_take_holes(out, head->options.zeros, &holes, &reason)) != BP_OK)
 		lattice_free(out);
 	if (result != BP_OK)
 		error_set(error, result, reason.offset, "%s: %s", file ? file : path, reason.message);
@@ -151,7 +159,7 @@ static int show_draw(struct show *show, const struct show_options *options)
 			return EXIT_FAILED;
 		}
 	} else if (options->reference) {
-		if (reference_read(options->reference, material->name, material->head.options.zeros, &show->reference, &error)) {
+		if (reference_read(options->reference, &material->head, &show->reference, &error)) {
 			report_error(NULL, NULL, &error); /* names the file */
 			return EXIT_FAILED;
 		}

@@ -127,8 +127,9 @@ static int subset_write(struct subset *subset)
 		return interrupt_exit(subset->copy.output);
 	if (!subset->quiet) {
 		report_remark(subset->copy.output, &error);
-		printf("%s: %" PRIu64 " material%s, %" PRIu64 " of %" PRIu64 " bytes of their records\n", subset->copy.output,
-		       totals.copied, totals.copied == 1 ? "" : "s", totals.bytes_to, totals.bytes_from);
+		text_print(subset->copy.output, 0);
+		printf(": %" PRIu64 " material%s, %" PRIu64 " of %" PRIu64 " bytes of their records\n", totals.copied,
+		       totals.copied == 1 ? "" : "s", totals.bytes_to, totals.bytes_from);
 	}
 	return subset->lacking ? EXIT_FAILED : EXIT_OK;
 }

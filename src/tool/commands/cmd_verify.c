@@ -46,11 +46,13 @@ static void summary_print(const struct findings *findings, uint64_t materials, u
 		json_integer(&json, "problems", findings->count);
 		json_finish(&json);
 	} else if (findings->count == 0) {
-		printf("%s: %" PRIu64 " material%s%s, no problem found\n", findings->path, materials, materials == 1 ? "" : "s",
+		text_print(findings->path, 0);
+		printf(": %" PRIu64 " material%s%s, no problem found\n", materials, materials == 1 ? "" : "s",
 		       deep ? ", all decoded" : "");
 	} else {
-		printf("%s: %" PRIu64 " problem%s found; restore a copy, build it again, or save the rest with `brdfpack recover`\n",
-		       findings->path, findings->count, findings->count == 1 ? "" : "s");
+		text_print(findings->path, 0);
+		printf(": %" PRIu64 " problem%s found; restore a copy, build it again, or save the rest with `brdfpack recover`\n",
+		       findings->count, findings->count == 1 ? "" : "s");
 	}
 }
 

@@ -13,3 +13,8 @@ print("aligned" if len({columns(r[:r.index("spectral")]) for r in rows}) == 1 el
 code brdfpack extract out.bpk $'\x9b31mred'
 code brdfpack verify $'no\xe2\x80\xaesuch.bpk'
 code brdfpack list $'no\x1b[31m.bpk'
+# files too, in what is said of success
+evil=$'e\x1b[31mvil'
+for c in "subset -o $evil.bpk out.bpk" "merge -o $evil.bpk out.bpk" "recover -o $evil.bpk out.bpk" "verify $evil.bpk"; do brdfpack $c | cat -v; done
+damage out.bpk "$evil.bpk" plain
+brdfpack verify "$evil.bpk" 2>/dev/null | cat -v

@@ -18,3 +18,7 @@ build -q --profile spectral -o spectral.bpk .
 brdfpack show --measured . -o e.svg spectral.bpk alpha
 brdfpack show --profile spectral -o f.svg alpha.binary
 cmp e.svg f.svg && cmp b.svg <(brdfpack show -o g.svg alpha.binary; cat g.svg) && echo "as packed"
+# another material's file under that name would give a picture of nothing
+mkdir other
+cp "$FIXTURES/beta.binary" other/alpha.binary
+code brdfpack show --measured other -o h.svg out.bpk alpha
