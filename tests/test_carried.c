@@ -127,6 +127,25 @@ static void it_begins_with_the_first_negative_value(void **state)
 	}
 }
 
+/* Another way to say "not measured", once it has begun, is passed over as a measured value is. */
+static void other_negative_values_on_the_way_do_not_end_it(void **state)
+{
+	(void)state;
+	struct carried_reader reader = {.values = 2 * VALUES};
+	uint8_t bytes[100];
+	double values[VALUES], file[2 * VALUES];
+	bytes_make(bytes, sizeof bytes);
+	values_make(bytes, sizeof bytes, values);
+	for (size_t n = 0; n < VALUES; n++) {
+		file[2 * n] = values[n];
+		file[2 * n + 1] = n % 2 ? -5 : -(double)INFINITY;
+	}
+	assert_true(carried_read(&reader, file, 2 * VALUES));
+	assert_true(reader.whole);
+	assert_memory_equal(reader.bytes, bytes, sizeof bytes);
+	free(reader.bytes);
+}
+
 static void a_file_that_lost_some_of_it_carries_nothing(void **state)
 {
 	(void)state;
@@ -161,6 +180,7 @@ int main(void)
 		cmocka_unit_test(room_is_six_bytes_to_a_value_less_twelve),
 		cmocka_unit_test(other_files_carry_nothing),
 		cmocka_unit_test(it_begins_with_the_first_negative_value),
+		cmocka_unit_test(other_negative_values_on_the_way_do_not_end_it),
 		cmocka_unit_test(a_file_that_lost_some_of_it_carries_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

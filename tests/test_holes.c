@@ -227,6 +227,42 @@ static void black_cells_at_the_edge_stay_measured(void **state)
 	free(near_edge);
 }
 
+/*
+ * Deeper below the horizon than an instrument reaches all cells hold one value. Where most of those above it do too, the material has
+ * that value there; where few do, the value stands for "not measured".
+ */
+static void a_value_that_goes_on_above_a_deep_edge_is_measured(void **state)
+{
+	const struct lattice_dims dims = LATTICES[1];
+	const size_t cells = lattice_cells(dims);
+	uint8_t *seen = malloc(cells), *deep = malloc(cells);
+	(void)state;
+	assert_int_equal(lattice_seen(dims, seen, NULL), BP_OK);
+	assert_int_equal(lattice_centre_below(dims, -0.15, deep, NULL), BP_OK);
+	for (int most = 0; most < 2; most++) {
+		struct lattice lattice;
+		struct holes holes;
+		size_t hidden = 0, shallow = 0;
+		assert_int_equal(lattice_alloc(dims, &lattice, NULL), BP_OK);
+		for (size_t n = 0; n < cells; n++) {
+			const bool same = !seen[n] && (deep[n] || (shallow++ % 4 != 0) == most);
+			hidden += !seen[n] && deep[n];
+			for (int c = 0; c < 3; c++)
+				lattice.rgb[c][n] = same ? 0.25 : 0.5 + 0.001 * (double)(n % 97);
+		}
+		assert_true(hidden > shallow);
+		lattice_validate(&lattice);
+		assert_int_equal(lattice_take_holes(&lattice, ZEROS_AUTO, &holes, NULL), BP_OK);
+		if (most)
+			assert_int_equal(holes.count, 0);
+		else
+			assert_true(holes.count >= hidden && holes.count <= hidden + shallow / 4 + 1 && holes.value[1] == 0.25);
+		lattice_free(&lattice);
+	}
+	free(seen);
+	free(deep);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -237,6 +273,7 @@ int main(void)
 		cmocka_unit_test(materials_that_are_defined_everywhere_are_measured),
 		cmocka_unit_test(a_formula_that_ends_at_the_horizon),
 		cmocka_unit_test(black_cells_at_the_edge_stay_measured),
+		cmocka_unit_test(a_value_that_goes_on_above_a_deep_edge_is_measured),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

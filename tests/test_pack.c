@@ -1,6 +1,7 @@
 /* The half that writes: packing from memory, the writer, reading what is in memory or comes through callbacks. */
 #include "archive_fixture.h"
 
+#include <float.h>
 #include <pthread.h>
 
 #include "merl/merl_file.h"
@@ -574,6 +575,41 @@ static void version_and_numbers_agree(void **state)
 	assert_string_equal(bp_status_text(BP_ERROR_CANCELLED), "cancelled");
 }
 
+/* Beyond what a MERL file can say values are cut, so that their sums and ratios are numbers; what comes back is finite. */
+static void values_at_the_end_of_the_range_are_cut(void **state)
+{
+	struct tables *t = tables_make();
+	double *values = malloc(3 * CELLS * sizeof *values);
+	(void)state;
+	for (size_t n = 0; n < 3 * CELLS; n++)
+		t->planes[n] = n % 5 ? DBL_MAX : 0x1p1014;
+	for (uint32_t profile = PROFILE_PAPER; profile <= PROFILE_SPECTRAL; profile++) {
+		const bp_measured measured = measured_of(t->planes, BP_NUMBER_DOUBLE, BP_LAYOUT_PLANES);
+		const bp_pack_options options = {.struct_bytes = sizeof options, .profile = profile};
+		const bp_table_options doubles = {.struct_bytes = sizeof doubles, .number = BP_NUMBER_DOUBLE, .continued = 1};
+		struct packed packed = pack(&measured, "a", &options);
+		bp_writer *writer = NULL;
+		bp_archive *archive = NULL;
+		uint8_t *bytes = NULL;
+		size_t count;
+		assert_int_equal(bp_writer_create(&writer, NULL), BP_OK);
+		assert_int_equal(bp_writer_add(writer, packed.bytes, packed.count, NULL), BP_OK);
+		assert_int_equal(bp_writer_save_memory(writer, &bytes, &count, NULL), BP_OK);
+		assert_int_equal(bp_archive_open_memory(bytes, count, &archive, NULL), BP_OK);
+		assert_int_equal(bp_archive_table(archive, 0, &doubles, values, 3 * CELLS * sizeof *values, NULL), BP_OK);
+		for (size_t n = 0; n < 3 * CELLS; n++)
+			assert_true(values[n] >= 0 && values[n] <= DBL_MAX);
+		for (size_t n = 0; profile == PROFILE_SPECTRAL && n < 3 * CELLS; n++)
+			assert_true(values[n] > 0x1p1009); /* more than about 2^1010 is not decoded */
+		bp_archive_close(archive);
+		bp_writer_free(writer);
+		bp_free(bytes);
+		bp_free(packed.bytes);
+	}
+	free(values);
+	free(t);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -590,6 +626,7 @@ int main(void)
 		cmocka_unit_test(the_writer_refuses_and_stays_as_it_was),
 		cmocka_unit_test(memory_and_callbacks_give_what_the_file_gives),
 		cmocka_unit_test(a_record_takes_another_name),
+		cmocka_unit_test(values_at_the_end_of_the_range_are_cut),
 		cmocka_unit_test(version_and_numbers_agree),
 	};
 	return cmocka_run_group_tests(tests, fixture_folder_make, fixture_folder_remove);

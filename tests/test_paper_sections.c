@@ -321,6 +321,35 @@ static void damaged_sections_never_crash_the_decoder(void **state)
 	model_drop(model);
 }
 
+static void a_level_is_refused_beyond_the_largest(void **state)
+{
+	const struct lattice_dims dims = {8, 9, 10};
+	(void)state;
+	for (int beyond = 0; beyond < 2; beyond++)
+		for (int sign = -1; sign <= 1; sign += 2) {
+			uint32_t index = 3;
+			int32_t level = sign * (PAPER_LEVEL_MAX + beyond);
+			const struct sparse_field field = {.count = 1, .index = &index, .level = &level, .step = PAPER_STEP_ONE};
+			struct sparse_field read = {.count = 0};
+			struct sparse_coder *coder = NULL;
+			struct range_encoder encoder;
+			struct range_decoder decoder;
+			struct byte_buffer out = {0};
+			range_encoder_start(&encoder, &out);
+			assert_int_equal(sparse_coder_create(dims, PAPER_HD, &coder, NULL), BP_OK);
+			sparse_encode(&encoder, coder, &field);
+			range_encoder_end(&encoder);
+			sparse_coder_free(coder);
+			assert_int_equal(sparse_coder_create(dims, PAPER_HD, &coder, NULL), BP_OK);
+			range_decoder_start(&decoder, out.bytes, out.count);
+			assert_int_equal(sparse_decode(&decoder, coder, 100, &read, NULL), beyond ? BP_ERROR_CORRUPT : BP_OK);
+			assert_true(beyond || (read.count == 1 && read.index[0] == 3 && read.level[0] == level));
+			sparse_field_free(&read);
+			sparse_coder_free(coder);
+			byte_buffer_free(&out);
+		}
+}
+
 static void a_claim_of_millions_of_coefficients_allocates_nothing(void **state)
 {
 	struct lattice_dims dims = {256, 256, 256};
@@ -351,6 +380,7 @@ int main(void)
 		cmocka_unit_test(a_small_budget_coarsens_all_alike),
 		cmocka_unit_test(marginals_are_stored_to_a_third_of_a_thousandth),
 		cmocka_unit_test(damaged_sections_never_crash_the_decoder),
+		cmocka_unit_test(a_level_is_refused_beyond_the_largest),
 		cmocka_unit_test(a_claim_of_millions_of_coefficients_allocates_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -124,7 +124,9 @@ static void hostile_values_under_a_right_checksum_are_refused(void **state)
 		{52, UINT64_C(0x10000078), 4, BP_OK},
 		{52, UINT64_C(0x20000000), 4, BP_OK},
 		{56, nan_bits, 8, BP_ERROR_CORRUPT},
-		{56, two, 8, BP_ERROR_CORRUPT}, /* horizon */
+		{56, two, 8, BP_ERROR_CORRUPT},
+		{56, UINT64_C(0xBFF0000000000001), 8, BP_ERROR_CORRUPT},
+		{56, UINT64_C(0xBFF0000000000000), 8, BP_OK}, /* horizon: -1 to 0 */
 		{112, nan_bits, 8, BP_ERROR_CORRUPT},
 		{120, infinity, 8, BP_ERROR_CORRUPT},
 		{128, two, 8, BP_ERROR_CORRUPT},

@@ -396,6 +396,30 @@ static void two_halves_are_joined_where_they_agree(void **state)
 	byte_buffer_free(&bytes);
 }
 
+/* A cell counts once, whichever of its halves is no number, so that what the counts leave over is what was marked as unmeasured. */
+static void cells_of_two_halves_that_are_no_numbers_count_once(void **state)
+{
+	(void)state;
+	static const size_t BOTH = 360 + 10, FIRST = 360 + 20, SECOND = 360 + 180 + 30; /* values of the second row */
+	const double nan = NAN;
+	struct byte_buffer bytes = {0};
+	struct lattice lattice;
+	struct origin origin;
+	halves_make(&bytes, 1);
+	memcpy(bytes.bytes + 12 + 8 * BOTH, &nan, 8);
+	memcpy(bytes.bytes + 12 + 8 * (BOTH + 180), &nan, 8);
+	memcpy(bytes.bytes + 12 + 8 * FIRST, &nan, 8);
+	memcpy(bytes.bytes + 12 + 8 * SECOND, &nan, 8);
+	assert_int_equal(bytes_read(&bytes, &lattice, &origin, NULL), BP_OK);
+	assert_int_equal(lattice.nonfinite_count, 3);
+	assert_int_equal(lattice.valid_count, lattice_cells(LATTICE_MERL) - 4); /* and the one that is marked */
+	assert_int_equal(origin.compared, lattice.valid_count);
+	assert_false(lattice.valid[180 + 10] || lattice.valid[180 + 20] || lattice.valid[180 + 30] || lattice.valid[5]);
+	assert_true(lattice.rgb[1][180 + 20] == 0);
+	lattice_free(&lattice);
+	byte_buffer_free(&bytes);
+}
+
 static void two_halves_that_disagree_are_refused_with_the_number(void **state)
 {
 	(void)state;
@@ -437,6 +461,7 @@ int main(void)
 		cmocka_unit_test(a_file_of_another_size_than_was_told_is_read_to_its_end),
 		cmocka_unit_test(foreign_files_are_called_what_they_are),
 		cmocka_unit_test(two_halves_are_joined_where_they_agree),
+		cmocka_unit_test(cells_of_two_halves_that_are_no_numbers_count_once),
 		cmocka_unit_test(two_halves_that_disagree_are_refused_with_the_number),
 		cmocka_unit_test(quantiles_are_those_of_the_differences),
 	};

@@ -5,6 +5,7 @@
 #include <archive_entry.h>
 #include <errno.h>
 #include <ftw.h>
+#include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -628,6 +629,64 @@ static int remove_folder(void **state)
 	return nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
+/* A container without any material is told where it was named, be it that the folder around it was named as well. */
+static void a_stream_is_named_whichever_way_it_was_met_first(void **state)
+{
+	(void)state;
+	mkdir(in("n"), 0700);
+	struct pack pack = pack_open("n/a.tgz", ARCHIVE_FORMAT_TAR_USTAR, ARCHIVE_FILTER_GZIP, NULL);
+	pack_text(&pack, "readme.txt", "no table");
+	pack_close(&pack);
+	for (int order = 0; order < 2; order++)
+		for (size_t count = 1; count <= 2; count++) {
+			const char *inputs[] = {in(order ? "n/a.tgz" : "n"), in(order ? "n" : "n/a.tgz")};
+			struct source_list list;
+			struct container *stream;
+			struct source_item item;
+			bp_error error;
+			bool more;
+			noticed[0] = '\0';
+			assert_int_equal(source_scan(inputs, count, &watched, &list, NULL), BP_OK);
+			assert_int_equal(list.stream_count, 1);
+			const bool named = count == 2 || order;
+			assert_int_equal(list.stream_named[0], named);
+			assert_int_equal(container_open(list.streams[0], CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
+			assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, &error),
+			                 named ? BP_ERROR_BAD_INPUT : BP_OK);
+			assert_false(more);
+			if (named)
+				expect_words(error.message, "no material in it; other files passed over: 1 ");
+			container_close(stream);
+			source_list_free(&list);
+		}
+}
+
+static void folders_end_a_thousand_deep(void **state)
+{
+	(void)state;
+	char path[3000] = "o", *end = path + 1;
+	mkdir(in(path), 0700);
+	const int back = open(".", O_RDONLY | O_DIRECTORY);
+	assert_true(back >= 0);
+	assert_int_equal(chdir(in(path)), 0);
+	for (int depth = 1; depth <= 1001; depth++) {
+		assert_int_equal(mkdir("d", 0700), 0);
+		assert_int_equal(chdir("d"), 0);
+		if (depth == 1000)
+			assert_int_equal(close(open("last.binary", O_CREAT | O_WRONLY, 0600)), 0);
+		memcpy(end, "/d", 3);
+		end += 2;
+	}
+	assert_int_equal(close(open("lost.binary", O_CREAT | O_WRONLY, 0600)), 0);
+	assert_int_equal(fchdir(back), 0);
+	close(back);
+	struct source_list list = scan("o");
+	assert_string_equal(names_of(&list), "last ");
+	expect_words(noticed, "more than 1000 folders deep: what is below is not searched");
+	assert_int_equal(list.damaged_count, 1);
+	source_list_free(&list);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -647,6 +706,8 @@ int main(void)
 		cmocka_unit_test(names_in_utf8_survive_in_the_c_locale),
 		cmocka_unit_test(a_damaged_container_is_told_with_its_member_and_the_others_are_read),
 		cmocka_unit_test(a_container_cut_off_anywhere_ends_with_an_error_or_fewer_members),
+		cmocka_unit_test(a_stream_is_named_whichever_way_it_was_met_first),
+		cmocka_unit_test(folders_end_a_thousand_deep),
 		cmocka_unit_test(an_encrypted_member_is_refused_with_a_remedy),
 	};
 	return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -36,20 +36,18 @@ static double mean(const struct lattice *lattice, size_t cell)
 	return (lattice->rgb[0][cell] + lattice->rgb[1][cell] + lattice->rgb[2][cell]) / 3;
 }
 
-/* The mean goes into `a`. */
+/* The mean goes into `a`. What is wrong with either half, as lattice_scan noted it, is wrong with the cell. */
 static void halves_join(struct lattice *a, const struct lattice *b, struct reciprocity *reciprocity)
 {
 	const size_t cells = lattice_cells(a->dims);
-	a->valid_count = 0;
-	a->nonfinite_count += b->nonfinite_count;
+	for (size_t n = 0; n < cells; n++)
+		a->valid[n] |= b->valid[n];
+	lattice_scan_finish(a);
 	for (size_t n = 0; n < cells; n++) {
-		const bool both = a->valid[n] && b->valid[n];
-		if (both)
+		if (a->valid[n])
 			reciprocity_add(reciprocity, mean(a, n), mean(b, n));
 		for (int c = 0; c < 3; c++)
-			a->rgb[c][n] = both ? 0.5 * (a->rgb[c][n] + b->rgb[c][n]) : 0;
-		a->valid[n] = both;
-		a->valid_count += both;
+			a->rgb[c][n] = a->valid[n] ? 0.5 * (a->rgb[c][n] + b->rgb[c][n]) : 0;
 	}
 }
 
@@ -63,8 +61,6 @@ bp_status two_halves_read(struct input *in, struct lattice *out, struct origin *
 	if (!status)
 		status = planes_split(in, half, error);
 	if (!status) {
-		lattice_scan_finish(&half[0]);
-		lattice_scan_finish(&half[1]);
 		halves_join(&half[0], &half[1], reciprocity);
 		*origin = (struct origin){.kind = ORIGIN_TWO_HALVES};
 		reciprocity_tell(reciprocity, origin);

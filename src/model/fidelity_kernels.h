@@ -30,12 +30,6 @@ struct fidelity_kernels {
 	                       const struct fidelity_table *tables, size_t count);
 };
 
-extern const struct fidelity_kernels fidelity_kernels_plain, fidelity_kernels_avx2;
-
-/* Those for this processor. */
-static inline const struct fidelity_kernels *fidelity_kernels_get(void)
-{
-	return kernels_avx2_usable() ? &fidelity_kernels_avx2 : &fidelity_kernels_plain;
-}
+KERNELS_OF(fidelity)
 
 #endif

@@ -21,12 +21,6 @@ struct fill_kernels {
 	void (*fill_smooth)(const struct fill_level *level, unsigned sweeps, float *scratch);
 };
 
-extern const struct fill_kernels fill_kernels_plain, fill_kernels_avx2;
-
-/* Those for this processor. */
-static inline const struct fill_kernels *fill_kernels_get(void)
-{
-	return kernels_avx2_usable() ? &fill_kernels_avx2 : &fill_kernels_plain;
-}
+KERNELS_OF(fill)
 
 #endif

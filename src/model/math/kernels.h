@@ -2,7 +2,8 @@
  * kernels.h: hot loops that are compiled twice and chosen once.
  *
  * The loops of a wing stand in its files NAME.inc.h as static functions KERNEL(name). WING_kernels.inc.h includes them all and
- * ends in one table of function pointers; WING_kernels.c compiles that text for any processor, WING_kernels_avx2.c for AVX2.
+ * ends in one table of function pointers, whose type is in WING_kernels.h; WING_kernels.c compiles that text for any processor,
+ * WING_kernels_avx2.c for AVX2.
  * To add a loop: write KERNEL(loop) in an .inc.h, add a member to WING_kernels.h and an initialiser to WING_kernels.inc.h.
  *
  * Both tables give the same bits: no fused multiply-add, no reassociation by the compiler, and sums run over
@@ -13,5 +14,13 @@
 
 /* Whether this processor runs the tables compiled for AVX2. Cheap; thread-safe. */
 int kernels_avx2_usable(void);
+
+/* The tables of a wing, and WING_kernels_get(): the one for this processor. */
+#define KERNELS_OF(wing) \
+	extern const struct wing##_kernels wing##_kernels_plain, wing##_kernels_avx2; \
+	static inline const struct wing##_kernels *wing##_kernels_get(void) \
+	{ \
+		return kernels_avx2_usable() ? &wing##_kernels_avx2 : &wing##_kernels_plain; \
+	}
 
 #endif

@@ -55,12 +55,6 @@ struct paper_kernels {
 	void (*paper_colour)(float diffuse, float specular, float limit, size_t n, float *out);
 };
 
-extern const struct paper_kernels paper_kernels_plain, paper_kernels_avx2;
-
-/* Those for this processor. */
-static inline const struct paper_kernels *paper_kernels_get(void)
-{
-	return kernels_avx2_usable() ? &paper_kernels_avx2 : &paper_kernels_plain;
-}
+KERNELS_OF(paper)
 
 #endif

@@ -74,12 +74,6 @@ struct robust_kernels {
 	                      struct anchor_sums *out);
 };
 
-extern const struct robust_kernels robust_kernels_plain, robust_kernels_avx2;
-
-/* Those for this processor. */
-static inline const struct robust_kernels *robust_kernels_get(void)
-{
-	return kernels_avx2_usable() ? &robust_kernels_avx2 : &robust_kernels_plain;
-}
+KERNELS_OF(robust)
 
 #endif

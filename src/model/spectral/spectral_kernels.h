@@ -94,12 +94,6 @@ struct spectral_kernels {
 	                        double ambient, double *out);
 };
 
-extern const struct spectral_kernels spectral_kernels_plain, spectral_kernels_avx2;
-
-/* Those for this processor. */
-static inline const struct spectral_kernels *spectral_kernels_get(void)
-{
-	return kernels_avx2_usable() ? &spectral_kernels_avx2 : &spectral_kernels_plain;
-}
+KERNELS_OF(spectral)
 
 #endif
