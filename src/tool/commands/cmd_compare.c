@@ -149,10 +149,14 @@ static void result_take(void *user, const struct job_result *result)
 	struct compare *compare = user;
 	struct compare_item *item = &compare->items[result->number];
 	bp_error error = result->error;
-	if (!error.status && result->record_bytes < sizeof item->result)
-		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is too short");
+	size_t whole = sizeof item->result;
+	if (!error.status && result->record_bytes >= whole)
+		memcpy(&item->result, result->record, whole);
+	for (int l = 0; l < LIGHTING_COUNT; l++)
+		whole += item->result.png_bytes[l];
+	if (!error.status && result->record_bytes != whole)
+		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is not whole");
 	if (!error.status) {
-		memcpy(&item->result, result->record, sizeof item->result);
 		error.status = images_write(compare, item, result->record + sizeof item->result, &error);
 	}
 	if (error.status && (item->error = malloc(sizeof error))) {

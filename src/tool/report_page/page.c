@@ -170,7 +170,8 @@ static bp_status page_write(const struct page *page, struct output *output, bp_e
 	if (page->viewer)
 		fwrite(page->viewer, 1, page->viewer_bytes, out);
 	page_sheet_write(out, page);
-	page_archive_write(out, page);
+	if (status == BP_OK)
+		status = page_archive_write(out, page, error);
 	if (page->details && page->count)
 		fputs("<section id=details aria-labelledby=details-h><h2 id=details-h>Each material</h2>\n", out);
 	for (size_t n = 0; page->details && n < page->count; n++)

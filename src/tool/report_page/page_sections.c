@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "error.h"
 #include "page_assets.inc"
 #include "page_html.h"
 #include "page_plots.h"
@@ -139,13 +140,18 @@ static void worst_write(FILE *out, const struct page *page, const struct page_ou
 	fputs("</tbody></table>\n", out);
 }
 
-void page_archive_write(FILE *out, const struct page *page)
+bp_status page_archive_write(FILE *out, const struct page *page, bp_error *error)
 {
 	const struct page_outcome **order = calloc(page->count + 1, sizeof *order);
 	struct plot_ladder *ladders = calloc(page->count + 1, sizeof *ladders);
 	size_t count = 0;
+	if (!order || !ladders) {
+		free(order);
+		free(ladders);
+		return error_memory(error, page->count * (sizeof *order + sizeof *ladders));
+	}
 	fputs("<section id=archive aria-labelledby=archive-h><h2 id=archive-h>The archive</h2>\n", out);
-	for (size_t n = 0; order && ladders && n < page->count; n++) {
+	for (size_t n = 0; n < page->count; n++) {
 		const struct page_outcome *outcome = &page->outcomes[n];
 		if (!outcome->html)
 			continue;
@@ -170,6 +176,7 @@ void page_archive_write(FILE *out, const struct page *page)
 		fputs("</ul>", out);
 	}
 	fputs("</section></section>\n", out);
+	return BP_OK;
 }
 
 void page_end_write(FILE *out)

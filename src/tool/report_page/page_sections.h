@@ -31,7 +31,8 @@ struct page {
 
 void page_head_write(FILE *out, const struct page *page);
 void page_sheet_write(FILE *out, const struct page *page);
-void page_archive_write(FILE *out, const struct page *page);
 void page_end_write(FILE *out);
+/* BP_ERROR_MEMORY: without the materials' order. */
+bp_status page_archive_write(FILE *out, const struct page *page, bp_error *error);
 
 #endif
