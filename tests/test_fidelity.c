@@ -211,6 +211,23 @@ static void extreme_values_give_finite_figures(void **user)
 	}
 }
 
+/* What is beyond all numbers is told as the largest: here 6e307 beside 0, in units of a hundredth. */
+static void an_error_beyond_all_numbers_is_the_largest_one(void **user)
+{
+	struct pair p;
+	struct fidelity f;
+	(void)user;
+	pair_make(&p, (struct lattice_dims){4, 4, 4}, 1e307, 0);
+	for (int c = 0; c < 3; c++)
+		for (size_t i = 0; i < 64; i++) {
+			p.truth.rgb[c][i] = 0;
+			p.table.rgb[c][i] = (float)(i % 7);
+		}
+	assert_int_equal(fidelity_measure(&p.truth, &p.table, &f, NULL), BP_OK);
+	assert_true(f.largest_relative == DBL_MAX && isfinite(f.log_rmse));
+	pair_free(&p);
+}
+
 static void unlike_tables_and_empty_ones_are_refused(void **user)
 {
 	(void)user;
@@ -261,6 +278,7 @@ int main(void)
 		cmocka_unit_test(equal_tables_have_no_error),
 		cmocka_unit_test(what_stands_in_invalid_cells_does_not_count),
 		cmocka_unit_test(extreme_values_give_finite_figures),
+		cmocka_unit_test(an_error_beyond_all_numbers_is_the_largest_one),
 		cmocka_unit_test(unlike_tables_and_empty_ones_are_refused),
 		cmocka_unit_test(both_kernel_tables_give_the_same_bits),
 	};
