@@ -6,8 +6,6 @@
 
 #include "error.h"
 
-#include <string.h>
-
 void sha256_start(struct sha256 *sha) { sha256_init(&sha->context); }
 
 void sha256_add(void *user, const void *bytes, size_t count)
