@@ -253,6 +253,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		free(fitted);
 		return error_memory(error, 3 * cells * sizeof(float));
 	}
+	memory_prefer_huge(fitted->coefficient[0], 3 * cells * sizeof(float));
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
 	stage_enter(STAGE_REGRESSION);
