@@ -120,7 +120,26 @@ static void a_cell_is_valid_when_all_channels_are_finite_and_not_negative(void *
 		if (lattice.valid[n])
 			assert_true(lattice.rgb[0][n] == cases[n % count].r && lattice.rgb[1][n] == cases[n % count].g);
 	}
+	assert_true(lattice.most == DBL_MAX);
 	lattice_free(&lattice);
+}
+
+static void no_valid_value_is_above_the_most(void **state)
+{
+	(void)state;
+	static const double top[3] = {7, -7, INFINITY}; /* of a valid cell, and of two that are not */
+	for (int t = 0; t < 3; t++) {
+		struct lattice lattice;
+		assert_int_equal(lattice_alloc((struct lattice_dims){7, 8, 9}, &lattice, NULL), BP_OK);
+		const size_t cells = lattice_cells(lattice.dims), at = cells - 2;
+		for (size_t n = 0; n < cells; n++)
+			for (int c = 0; c < 3; c++)
+				lattice.rgb[c][n] = n == at && c == 1 ? top[t] : (double)(n % 3);
+		lattice_validate(&lattice);
+		assert_int_equal(lattice.valid[at], t == 0);
+		assert_true(lattice.most == (t == 0 ? 7 : 2));
+		lattice_free(&lattice);
+	}
 }
 
 static void quarter_turns_agree_with_libm_and_are_exact_at_the_ends(void **state)
@@ -251,6 +270,7 @@ int main(void)
 		cmocka_unit_test(illegal_dims_are_refused_and_leave_the_output_alone),
 		cmocka_unit_test(planes_are_aligned_and_apart_and_nothing_is_valid),
 		cmocka_unit_test(a_cell_is_valid_when_all_channels_are_finite_and_not_negative),
+		cmocka_unit_test(no_valid_value_is_above_the_most),
 		cmocka_unit_test(quarter_turns_agree_with_libm_and_are_exact_at_the_ends),
 		cmocka_unit_test(the_corner_cosine_agrees_with_rotated_directions),
 		cmocka_unit_test(below_the_horizon_means_the_whole_cell_and_its_centre_under_the_limit),

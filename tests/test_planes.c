@@ -81,7 +81,7 @@ static void levels_come_back_from_any_prefix_of_units(void **unused)
 			coefficients_make(d, one_in, field);
 			assert_int_equal(planes_create(d, 1, &in, NULL), BP_OK);
 			assert_int_equal(planes_create(d, 0, &out, NULL), BP_OK);
-			planes_quantise(in, field, 1, 0);
+			assert_int_equal(planes_quantise(in, field, 1, 0, NULL), BP_OK);
 			planes_start(in, planes_settle(in, 0, centre));
 			const uint32_t units = planes_units(in), end = units - units / 5;
 			range_encoder_start(&encoder, &bytes);
@@ -131,7 +131,7 @@ static void a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays
 	for (int y = 2; y < 5; y++)
 		for (int x = 2; x < 5; x++)
 			field[0][(y * 16 + x) * 40 + 15] = y == 3 && x == 3 ? -0.9f : 2.1f;
-	planes_quantise(planes, field, 1, 0.4f);
+	assert_int_equal(planes_quantise(planes, field, 1, 0.4f, NULL), BP_OK);
 	assert_int_equal(planes->levels_count, 3);
 	/* The company comes first in the pool. */
 	assert_int_equal(planes->levels[1].level[3 * 8 + 3], -1);
@@ -142,11 +142,42 @@ static void a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays
 	/* The centres are those of what is left, to the eight bits that are kept. */
 	assert_true(fabsf(centre[0] + 0.1f) < 0.003f && fabsf(centre[1] - 0.1f) < 0.003f);
 	/* Alone and nothing else: no plane is left. */
+	planes_free(planes);
+	assert_int_equal(planes_create(d, 1, &planes, NULL), BP_OK);
 	memset(block, 0, 3 * cells * sizeof *block);
 	field[2][(3 * 16 + 3) * 40 + 2] = 0.9f;
-	planes_quantise(planes, field, 1, 0.4f);
+	assert_int_equal(planes_quantise(planes, field, 1, 0.4f, NULL), BP_OK);
 	assert_int_equal(planes->levels_count, 2);
 	assert_int_equal(planes_settle(planes, 0.4f, centre), 0);
+	planes_free(planes);
+	free(block);
+}
+
+/* The coefficients that were found for the first step serve steps that are coarser or a little finer; much finer ones look again. */
+static void every_step_has_the_levels_that_it_would_have_alone(void **unused)
+{
+	static const float steps[] = {100, 130, 90, 20, 21, 500, 3};
+	const struct lattice_dims d = {24, 20, 37};
+	const size_t cells = lattice_cells(d);
+	float *block = malloc(3 * cells * sizeof *block), *const field[3] = {block, block + cells, block + 2 * cells};
+	struct planes *planes = NULL;
+	(void)unused;
+
+	coefficients_make(d, 9, field);
+	assert_int_equal(planes_create(d, 1, &planes, NULL), BP_OK);
+	for (size_t n = 0; n < sizeof steps / sizeof *steps; n++) {
+		struct planes *alone = NULL;
+		assert_int_equal(planes_create(d, 1, &alone, NULL), BP_OK);
+		assert_int_equal(planes_quantise(planes, field, steps[n], 0.4f, NULL), BP_OK);
+		assert_int_equal(planes_quantise(alone, field, steps[n], 0.4f, NULL), BP_OK);
+		assert_true(alone->levels_count > 1);
+		assert_int_equal(planes->levels_count, alone->levels_count);
+		assert_memory_equal(planes->levels, alone->levels, alone->levels_count * sizeof *alone->levels);
+		for (int f = 0; f < 3; f++)
+			assert_memory_equal(planes->level_slot[f], alone->level_slot[f],
+			                    (d.phi_d + 4) * alone->bands.blocks * sizeof *alone->level_slot[f]);
+		planes_free(alone);
+	}
 	planes_free(planes);
 	free(block);
 }
@@ -268,6 +299,7 @@ int main(void)
 		cmocka_unit_test(bands_cover_every_coefficient_once),
 		cmocka_unit_test(levels_come_back_from_any_prefix_of_units),
 		cmocka_unit_test(a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays),
+		cmocka_unit_test(every_step_has_the_levels_that_it_would_have_alone),
 		cmocka_unit_test(the_lowest_plane_is_that_of_the_last_unit_coded),
 		cmocka_unit_test(arbitrary_bytes_decode_to_something_legal),
 		cmocka_unit_test(the_mixer_learns_what_a_bit_depends_on),

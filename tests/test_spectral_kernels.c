@@ -195,9 +195,36 @@ static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 	assert_memory_equal(rgb[0], rgb[1], sizeof rgb[0]);
 }
 
+/* Any number of rows, by columns in fours of 16 and what is left of them: the sum in ascending order, and nothing beside it. */
+static void products_of_rows_with_a_matrix(void **unused)
+{
+	enum { COUNT = 11, IN = 13, OUT = 150, ROWS = 9 };
+	float in[ROWS * IN], matrix[COUNT * 144], out[(ROWS + 1) * OUT];
+	(void)unused;
+
+	random_floats(in, ROWS * IN);
+	random_floats(matrix, COUNT * 144);
+	for (int k = 0; k < 2; k++)
+		for (size_t rows = 0; rows <= ROWS; rows++)
+			for (size_t columns = 16; columns <= 144; columns += 16) {
+				memset(out, 0, sizeof out);
+				table(k)->cosine_product(in, IN, rows, COUNT, matrix, columns, out, OUT);
+				for (size_t r = 0; r <= ROWS; r++)
+					for (size_t c = 0; c < OUT; c++) {
+						volatile float sum = 0; /* every step rounded */
+						for (size_t m = 0; m < COUNT && r < rows && c < columns; m++) {
+							volatile const float part = in[r * IN + m] * matrix[m * columns + c];
+							sum = sum + part;
+						}
+						assert_true(out[r * OUT + c] == sum);
+					}
+			}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(products_of_rows_with_a_matrix),
 		cmocka_unit_test(logarithms_of_valid_cells_and_their_sum),
 		cmocka_unit_test(moments_weigh_large_coefficients_less),
 		cmocka_unit_test(worths_are_those_of_their_formula),

@@ -64,13 +64,51 @@ static void what_a_record_cannot_hold_becomes_less_and_valid_cells_stay(void **u
 		for (int c = 0; c < 3; c++)
 			for (size_t i = 0; i < cells; i++)
 				table[c][i] = truth_at(c, i);
-		assert_int_equal(spectral_fill(DIMS, valid, table, NULL), BP_OK);
+		assert_int_equal(spectral_fill(DIMS, valid, table, NULL, NULL, NULL), BP_OK);
 		assert_int_equal(spectral_project(spectrum, DIMS, valid, base, EVEN, 1500, steps, table, NULL), BP_OK);
 		rest[steps] = rest_of(spectrum, table, valid, base, 600);
 	}
 	assert_true(rest[1] < 0.9 * rest[0]);
 	assert_true(rest[2] < rest[1] && rest[3] < rest[2]);
 	spectrum_free(spectrum);
+	free(valid);
+	free(block);
+}
+
+/* A table that is made while it is filled, as far as it is asked for. */
+struct making {
+	float *const *table;
+	size_t done[3];
+};
+
+static void making_ready(void *user, int channel, size_t end)
+{
+	struct making *making = user;
+	assert_true(end > 0 && end <= lattice_cells(DIMS));
+	for (; making->done[channel] < end; making->done[channel]++)
+		making->table[channel][making->done[channel]] = truth_at(channel, making->done[channel]);
+}
+
+/* The first slices, and the last, have no valid cell. */
+static void a_table_made_while_it_is_filled_becomes_what_one_made_before_does(void **unused)
+{
+	const size_t cells = lattice_cells(DIMS), slice = DIMS.theta_d * DIMS.phi_d;
+	float *block = calloc(6 * cells, sizeof *block), *const table[3] = {block, block + cells, block + 2 * cells};
+	float *const made[3] = {block + 3 * cells, block + 4 * cells, block + 5 * cells};
+	struct making making = {.table = made};
+	uint8_t *valid = malloc(cells);
+	(void)unused;
+
+	for (size_t i = 0; i < cells; i++) {
+		valid[i] = i / slice > 2 && i / slice + 1 < DIMS.theta_h && i % 5 != 2;
+		for (int c = 0; c < 3; c++)
+			table[c][i] = truth_at(c, i);
+	}
+	assert_int_equal(spectral_fill(DIMS, valid, table, NULL, NULL, NULL), BP_OK);
+	assert_int_equal(spectral_fill(DIMS, valid, made, making_ready, &making, NULL), BP_OK);
+	for (int c = 0; c < 3; c++)
+		assert_int_equal(making.done[c], cells);
+	assert_memory_equal(block, made[0], 3 * cells * sizeof *block);
 	free(valid);
 	free(block);
 }
@@ -102,6 +140,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_a_record_cannot_hold_becomes_less_and_valid_cells_stay),
+		cmocka_unit_test(a_table_made_while_it_is_filled_becomes_what_one_made_before_does),
 		cmocka_unit_test(a_table_without_a_hole_is_left_alone),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,6 @@
 /* Packing from memory: the caller's table -> lattice -> record. */
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,7 +100,7 @@ static bp_status lattice_make(const bp_measured *measured, struct lattice *latti
 	memset(lattice->valid, 0, cells);
 	for (int c = 0; c < CHANNELS; c++) {
 		plane_copy(measured, cells, c, unscaled ? 1 : measured->scale[c], lattice->rgb[c]);
-		lattice_scan(lattice->rgb[c], cells, 1, lattice->valid);
+		lattice->most = fmax(lattice->most, lattice_scan(lattice->rgb[c], cells, 1, lattice->valid));
 	}
 	lattice_scan_finish(lattice);
 	return BP_OK;

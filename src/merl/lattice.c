@@ -102,11 +102,29 @@ void expansion_free(struct expansion *expansion)
 
 enum { CELL_NEGATIVE = 1, CELL_NONFINITE = 2 };
 
-void lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state)
+/* The largest of some values >= 0, or `largest` if that is larger; in lanes, which vectorise. */
+static double block_largest(const double *v, size_t count, double largest)
+{
+	enum { LANES = 16 };
+	double lane[LANES];
+	size_t n = 0;
+	for (int m = 0; m < LANES; m++)
+		lane[m] = largest;
+	for (; n + LANES <= count; n += LANES)
+		for (size_t m = 0; m < LANES; m++)
+			lane[m] = v[n + m] > lane[m] ? v[n + m] : lane[m];
+	for (; n < count; n++)
+		lane[0] = v[n] > lane[0] ? v[n] : lane[0];
+	for (int m = 0; m < LANES; m++)
+		largest = lane[m] > largest ? lane[m] : largest;
+	return largest;
+}
+
+double lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state)
 {
 	/* In blocks with flags as wide as the values, so that both loops vectorise. */
 	enum { BLOCK = 256 };
-	double flags[BLOCK];
+	double flags[BLOCK], largest = 0;
 	for (size_t start = 0; start < count; start += BLOCK) {
 		const size_t block = count - start < BLOCK ? count - start : BLOCK;
 		double *v = values + start;
@@ -118,7 +136,9 @@ void lattice_scan(double *restrict values, size_t count, double scale, uint8_t *
 		}
 		for (size_t n = 0; n < block; n++)
 			state[start + n] |= (uint8_t)(int)flags[n];
+		largest = block_largest(v, block, largest);
 	}
+	return largest;
 }
 
 void lattice_scan_finish(struct lattice *lattice)
@@ -145,7 +165,8 @@ void lattice_validate(struct lattice *lattice)
 {
 	const size_t cells = lattice_cells(lattice->dims);
 	memset(lattice->valid, 0, cells);
+	lattice->most = 0;
 	for (int c = 0; c < 3; c++)
-		lattice_scan(lattice->rgb[c], cells, 1, lattice->valid);
+		lattice->most = fmax(lattice->most, lattice_scan(lattice->rgb[c], cells, 1, lattice->valid));
 	lattice_scan_finish(lattice);
 }

@@ -55,6 +55,7 @@ struct lattice {
 	uint8_t *valid; /* 1: measured, in all three channels; 0: takes part in nothing */
 	size_t valid_count;
 	size_t nonfinite_count; /* cells that were refused because a channel was NaN or infinite */
+	double most;            /* no valid value is larger; 0 where that is not known */
 	void *block;            /* the one allocation behind the planes, each aligned to 64 bytes */
 };
 
@@ -76,7 +77,7 @@ bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error 
 void lattice_free(struct lattice *lattice); /* NULL and a zeroed struct are allowed */
 
 /*
- * Sets valid, valid_count and nonfinite_count from the planes: a cell is valid when all
+ * Sets valid, the counts and `most` from the planes: a cell is valid when all
  * three channels are finite and not below 0 (-0.0 counts as 0).
  */
 void lattice_validate(struct lattice *lattice);
@@ -84,9 +85,10 @@ void lattice_validate(struct lattice *lattice);
 /*
  * The same in steps, for a reader that works on data while it is in the cache. state = lattice.valid,
  * zeroed. lattice_scan: notes in state[count] what is wrong with the values, scales them, and
- * stores 0 for those that cannot be used; once per plane. lattice_scan_finish: state becomes valid.
+ * stores 0 for those that cannot be used; once per plane. Returns the largest of what it stored. lattice_scan_finish: state
+ * becomes valid; `most` is the reader's to set.
  */
-void lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state);
+double lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state);
 void lattice_scan_finish(struct lattice *lattice);
 
 /* Cosine and sine of t quarter turns, t in [0, 1]: exact at 0 and 1, within 2e-16, the same on every machine. */

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -60,7 +61,7 @@ static bp_status planes_read(struct input *in, struct lattice *lattice, struct c
 				return input_truncated(expected, in->done, error);
 			if (in->how.carried && !carried_read(carried, values, count))
 				return error_memory(error, carried->count);
-			lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start);
+			lattice->most = fmax(lattice->most, lattice_scan(values, count, MERL_SCALE[c], lattice->valid + start));
 		}
 	status = input_end(in, error);
 	if (status != BP_OK)

@@ -144,10 +144,10 @@ static inline double KERNEL(fidelity_largest)(const struct KERNEL(fidelity_block
 	uint64_t larger = 0;
 
 	for (size_t l = 0; l < FIDELITY_BLOCK; l++)
-		larger |= (d[l] < 0 ? -d[l] : d[l]) > largest * t->offset[l];
+		larger |= __builtin_fabs(d[l]) > largest * t->offset[l];
 	if (larger) /* seldom: the division is worth a branch */
 		for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
-			const double relative = (d[l] < 0 ? -d[l] : d[l]) / t->offset[l];
+			const double relative = __builtin_fabs(d[l]) / t->offset[l];
 			largest = relative > largest ? relative : largest;
 		}
 	return largest;
@@ -170,7 +170,7 @@ static inline void KERNEL(fidelity_add)(struct KERNEL(fidelity_block) *t, const 
 	for (size_t l = 0; l < FIDELITY_BLOCK; l++) {
 		e[l] = unit * (double)table[l] * t->keep[l];
 		d[l] = e[l] - t->b[l];
-		far |= (d[l] < 0 ? -d[l] : d[l]) > t->near[l];
+		far |= __builtin_fabs(d[l]) > t->near[l];
 	}
 	if (far || sums->largest_relative < 1.0 / 16) /* what is close is not larger */
 		sums->largest_relative = KERNEL(fidelity_largest)(t, d, sums->largest_relative);

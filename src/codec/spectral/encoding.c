@@ -127,7 +127,9 @@ static bp_status levels_encode(struct encoding *e, struct attempt *a, bp_error *
 /* Everything with e->step. */
 static bp_status encode_once(struct encoding *e, struct attempt *a, bp_error *error)
 {
-	planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING);
+	const bp_status status = planes_quantise(e->planes, e->model->coefficient, e->step, ROUNDING, error);
+	if (status)
+		return status;
 	planes_start(e->planes, planes_settle(e->planes, ROUNDING, e->centre));
 	a->units = planes_units(e->planes);
 	return levels_encode(e, a, error);

@@ -79,6 +79,7 @@ void planes_free(struct planes *p)
 	free(p->block);
 	free(p->pool);
 	free(p->levels);
+	free(p->candidates);
 	free(p->contexts);
 	free(p);
 }

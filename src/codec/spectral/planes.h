@@ -30,6 +30,12 @@ struct level_block {
 	uint8_t over[BLOCK_CELLS];
 };
 
+/* Encoder: a coefficient that may have a level. */
+struct candidate {
+	uint32_t slot, place; /* of its block, from level_slot[0] on; in the block */
+	float coefficient;
+};
+
 /*
  * Most blocks never hold a level. Those that do have a place in a pool, in the order in which they were met, so that what is worked on
  * lies close together whatever the lattice's size.
@@ -45,10 +51,14 @@ struct planes {
 	struct plane_block *pool;
 	uint32_t pool_count, pool_room;
 	/* Encoder only: the levels, in a pool of their own, and, per block, the planes that its largest one needs. */
-	uint32_t *level_slot[3];
+	uint32_t *level_slot[3]; /* one behind the other */
 	uint8_t *top[3];
 	struct level_block *levels;
 	uint32_t levels_count;
+	/* Encoder only: all coefficients of at least candidate_least, so that every further step looks at these alone. */
+	struct candidate *candidates;
+	uint32_t candidate_count;
+	float candidate_least;
 	struct plane_contexts *contexts;
 	void *block; /* the one allocation behind the arrays but for the pools */
 };
@@ -59,8 +69,11 @@ void planes_free(struct planes *planes); /* NULL is allowed */
 /* Forgets everything coded; `count` planes, 0..SPECTRAL_PLANES_MAX, are to come. */
 void planes_start(struct planes *planes, uint32_t count);
 
-/* Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign. planes_settle must follow. */
-void planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding);
+/*
+ * Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign. The coefficients must be the same every time.
+ * planes_settle must follow.
+ */
+bp_status planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding, bp_error *error);
 
 /*
  * Counts the planes that the levels need and returns them. Levels of 1 with little around them become 0 before, the

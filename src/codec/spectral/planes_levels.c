@@ -4,9 +4,12 @@
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
+#include "model/math/fast_math.h"
 #include "planes.h"
 
 enum { LANES = 16 };
+static const float CANDIDATES_FROM = 0.85f; /* of the least coefficient that a step does not make 0 */
 
 /* Is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
 static inline int any_above(const float *x, uint32_t least_bits)
@@ -18,12 +21,61 @@ static inline int any_above(const float *x, uint32_t least_bits)
 	return any != 0;
 }
 
+static bp_status candidate_add(struct planes *p, uint32_t slot, uint32_t place, float coefficient, bp_error *error)
+{
+	struct candidate *list = memory_grown(p->candidates, p->candidate_count, sizeof *list);
+	if (!list)
+		return error_memory(error, p->candidate_count * sizeof *list);
+	p->candidates = list;
+	list[p->candidate_count++] = (struct candidate){slot, place, coefficient};
+	return BP_OK;
+}
+
+/* Lanes first..first + count - 1, at most LANES, of one cell: slot is that of the cell's block in harmonic 0. */
+static bp_status lanes_look(struct planes *p, uint32_t slot, uint32_t place, const float *from, uint32_t first, uint32_t count,
+                            float least, bp_error *error)
+{
+	bp_status status = BP_OK;
+	for (uint32_t q = 0; q < count && !status; q++)
+		if (fabsf(from[q]) >= least)
+			status =
+				candidate_add(p, slot + spectrum_harmonic(p->dims.phi_d, first + q) * p->bands.blocks, place, from[q], error);
+	return status;
+}
+
+/* All coefficients from `least` on. */
+static bp_status candidates_find(struct planes *p, float *const coefficient[3], float least, bp_error *error)
+{
+	const uint32_t lanes = p->dims.phi_d, field = (lanes + 4) * p->bands.blocks;
+	bp_status status = BP_OK;
+
+	p->candidate_count = 0;
+	p->candidate_least = least;
+	for (uint32_t f = 0; f < 3; f++)
+		for (uint32_t b = 0; b < p->bands.count; b++) {
+			const struct band *band = &p->bands.band[b];
+			for (uint32_t y = 0; y < band->rows; y++)
+				for (uint32_t x = 0; x < band->columns && !status; x++) {
+					const float *row = coefficient[f] + ((size_t)(band->row + y) * p->dims.theta_d + band->column + x) * lanes;
+					const uint32_t slot =
+						f * field + 2 * p->bands.blocks + band->block_at + y / BLOCK_EDGE * band->block_stride + x / BLOCK_EDGE;
+					const uint32_t place = y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
+					for (uint32_t lane = 0; lane < lanes && !status; lane += LANES)
+						if (lanes - lane < LANES)
+							status = lanes_look(p, slot, place, row + lane, lane, lanes - lane, least, error);
+						else if (any_above(row + lane, bits_of_float(least)))
+							status = lanes_look(p, slot, place, row + lane, lane, LANES, least, error);
+				}
+		}
+	return status;
+}
+
 /* The coefficient's level, where it is not 0, in its block, which gets a place in the pool where it has none. */
-static inline void level_place(struct planes *p, uint32_t *slot, uint32_t place, float coefficient, float inverse, float rounding)
+static inline void level_place(struct planes *p, const struct candidate *c, float inverse, float rounding)
 {
 	const uint32_t most = (1u << SPECTRAL_PLANES_MAX) - 1;
-	const float size = fabsf(coefficient) * inverse;
-	uint32_t level = (uint32_t)(size + rounding);
+	const float size = fabsf(c->coefficient) * inverse;
+	uint32_t level = (uint32_t)(size + rounding), *slot = &p->level_slot[0][c->slot];
 
 	if (!level)
 		return;
@@ -33,51 +85,30 @@ static inline void level_place(struct planes *p, uint32_t *slot, uint32_t place,
 		memset(&p->levels[*slot], 0, sizeof *p->levels);
 	}
 	struct level_block *block = &p->levels[*slot];
-	block->level[place] = coefficient < 0 ? -(int32_t)level : (int32_t)level;
-	block->over[place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
+	block->level[c->place] = c->coefficient < 0 ? -(int32_t)level : (int32_t)level;
+	block->over[c->place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
 }
 
 static void levels_clear(struct planes *p)
 {
 	p->levels_count = 1;
-	for (int f = 0; f < 3; f++)
-		memset(p->level_slot[f], 0, (size_t)(p->dims.phi_d + 4) * p->bands.blocks * sizeof *p->level_slot[f]);
+	memset(p->level_slot[0], 0, 3 * (size_t)(p->dims.phi_d + 4) * p->bands.blocks * sizeof *p->level_slot[0]);
 }
 
-/* Lanes first..first + count - 1, at most LANES, of one cell: slot and place are those of the cell's block in harmonic 0. */
-static inline void lanes_quantise(struct planes *p, uint32_t *slot, uint32_t place, const float *from, uint32_t first,
-                                  uint32_t count, float inverse, float rounding)
+bp_status planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding, bp_error *error)
 {
-	for (uint32_t q = 0; q < count; q++)
-		if (fabsf(from[q]) * inverse + rounding >= 1)
-			level_place(p, slot + (size_t)spectrum_harmonic(p->dims.phi_d, first + q) * p->bands.blocks, place, from[q], inverse,
-			            rounding);
-}
-
-void planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding)
-{
-	const uint32_t lanes = p->dims.phi_d;
 	const float least = (1 - rounding) * step * 0.999f, inverse = 1 / step;
-	uint32_t least_bits;
 
-	memcpy(&least_bits, &least, sizeof least_bits);
+	/* The next step is about as large. */
+	const bp_status status = p->candidate_count && least >= p->candidate_least
+	                             ? BP_OK
+	                             : candidates_find(p, coefficient, CANDIDATES_FROM * least, error);
+	if (status)
+		return status;
 	levels_clear(p);
-	for (uint32_t f = 0; f < 3; f++)
-		for (uint32_t b = 0; b < p->bands.count; b++) {
-			const struct band *band = &p->bands.band[b];
-			for (uint32_t y = 0; y < band->rows; y++)
-				for (uint32_t x = 0; x < band->columns; x++) {
-					const float *row = coefficient[f] + ((size_t)(band->row + y) * p->dims.theta_d + band->column + x) * lanes;
-					uint32_t *slot = p->level_slot[f] + 2 * (size_t)p->bands.blocks + band->block_at +
-					                 (size_t)(y / BLOCK_EDGE) * band->block_stride + x / BLOCK_EDGE;
-					const uint32_t place = y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
-					for (uint32_t lane = 0; lane < lanes; lane += LANES)
-						if (lanes - lane < LANES)
-							lanes_quantise(p, slot, place, row + lane, lane, lanes - lane, inverse, rounding);
-						else if (any_above(row + lane, least_bits))
-							lanes_quantise(p, slot, place, row + lane, lane, LANES, inverse, rounding);
-				}
-		}
+	for (uint32_t n = 0; n < p->candidate_count; n++)
+		level_place(p, &p->candidates[n], inverse, rounding);
+	return BP_OK;
 }
 
 /* Counts the levels of one band of one harmonic and stores the first `room` of them. */

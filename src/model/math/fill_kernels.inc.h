@@ -1,4 +1,6 @@
 /* fill_kernels.inc.h: all loops of fill_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+#include <string.h>
+
 #include "fill_kernels.h"
 #include "vector.h"
 

@@ -1,5 +1,25 @@
 /* fill_steps.inc.h: the steps of fill.h on one level. See fill_kernels.h. */
 
+typedef int32_t KERNEL(ints8) __attribute__((vector_size(32)));
+typedef uint16_t KERNEL(pairs8) __attribute__((vector_size(16)));
+typedef int16_t KERNEL(words8) __attribute__((vector_size(16)));
+typedef uint8_t KERNEL(bytes8) __attribute__((vector_size(8)));
+
+/* Of eight pairs of cells from p on: the sums of those that are valid; and in *count how many. */
+static inline __attribute__((always_inline)) void KERNEL(pairs_sum)(const float *p, const uint8_t *valid, floats8 *sum,
+                                                                    KERNEL(words8) *count)
+{
+	typedef KERNEL(ints8) ints;
+	KERNEL(pairs8) pair; /* the even cell's mark in its lower half: little-endian, as all of the writing half */
+	memcpy(&pair, valid, sizeof pair);
+	const KERNEL(words8) even = (pair & 0xff) != 0, odd = (pair >> 8) != 0;
+	const floats8 x = FLOATS8_LOAD(p), y = FLOATS8_LOAD(p + 8);
+	const ints left = (ints)__builtin_shufflevector(x, y, 0, 2, 4, 6, 8, 10, 12, 14);
+	const ints right = (ints)__builtin_shufflevector(x, y, 1, 3, 5, 7, 9, 11, 13, 15);
+	*sum = (floats8)(left & __builtin_convertvector(even, ints)) + (floats8)(right & __builtin_convertvector(odd, ints));
+	*count -= even + odd;
+}
+
 /* Coarse cells from fine ones; returns how many coarse cells have no valid child. */
 static size_t KERNEL(fill_halve)(const struct fill_level *fine, const struct fill_level *coarse)
 {
@@ -13,23 +33,34 @@ static size_t KERNEL(fill_halve)(const struct fill_level *fine, const struct fil
 		const uint8_t *va = fine->valid + 2 * r * columns, *vb = fine->valid + second * columns;
 		float *value = coarse->value + r * coarse->columns;
 		uint8_t *valid = coarse->valid + r * coarse->columns;
-		unsigned empty = 0;
+		size_t c = 0, full = 0;
 
-		for (size_t c = 0; c < half; c++) {
+		for (; c + 8 <= half; c += 8) {
+			KERNEL(words8) n = {0};
+			floats8 up, down;
+			KERNEL(pairs_sum)(a + 2 * c, va + 2 * c, &up, &n);
+			KERNEL(pairs_sum)(b + 2 * c, vb + 2 * c, &down, &n);
+			const KERNEL(words8) none = n == 0;
+			const KERNEL(bytes8) has = __builtin_convertvector(none + 1, KERNEL(bytes8));
+			FLOATS8_STORE(value + c,
+			              (up + down) / __builtin_convertvector(__builtin_convertvector(n - none, KERNEL(ints8)), floats8));
+			memcpy(valid + c, &has, sizeof has);
+		}
+		for (; c < half; c++) {
 			int p = va[2 * c] != 0, q = va[2 * c + 1] != 0, s = vb[2 * c] != 0, t = vb[2 * c + 1] != 0, n = p + q + s + t;
 			float sum = ((p ? a[2 * c] : 0) + (q ? a[2 * c + 1] : 0)) + ((s ? b[2 * c] : 0) + (t ? b[2 * c + 1] : 0));
 			value[c] = sum / (float)(n ? n : 1);
 			valid[c] = n != 0;
-			empty += n == 0;
 		}
 		if (columns % 2) {
 			int p = va[columns - 1] != 0, s = vb[columns - 1] != 0, n = p + s;
 			float sum = (p ? a[columns - 1] : 0) + (s ? b[columns - 1] : 0);
 			value[half] = sum / (float)(n ? n : 1);
 			valid[half] = n != 0;
-			empty += n == 0;
 		}
-		missing += empty;
+		for (c = 0; c < coarse->columns; c++)
+			full += valid[c];
+		missing += coarse->columns - full;
 	}
 	return missing;
 }

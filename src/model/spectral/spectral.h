@@ -96,7 +96,12 @@ bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, 
                            const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3],
                            bp_error *error);
 
-/* spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. */
-bp_status spectral_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], bp_error *error);
+/*
+ * spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. Where `ready` is set, it makes all
+ * cells of a table up to `end`, or more, before they are looked at, slice after slice, so that they still lie in the cache.
+ */
+typedef void spectral_ready_fn(void *user, int table, size_t end);
+bp_status spectral_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], spectral_ready_fn *ready,
+                        void *user, bp_error *error);
 
 #endif

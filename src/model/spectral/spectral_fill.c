@@ -101,23 +101,22 @@ static void sweep(const struct runs *runs, int backwards, float *table)
 	}
 }
 
-/* What a slice before the first one with a valid cell is filled with: the mean of that one's. */
-static float start_value(struct lattice_dims d, const uint8_t *valid, const float *table)
+/* What a slice before the first one with a valid cell is filled with: the mean of that one's; it has to be ready. */
+static float start_value(size_t slice, const uint8_t *valid, const float *table)
 {
-	const size_t slice = (size_t)d.theta_d * d.phi_d, cells = lattice_cells(d);
 	double sum = 0;
 	size_t count = 0;
 
-	for (size_t at = 0; at < cells && !count; at += slice)
-		for (size_t n = at; n < at + slice; n++)
-			if (valid[n]) {
-				sum += (double)table[n];
-				count++;
-			}
+	for (size_t n = 0; n < slice; n++)
+		if (valid[n]) {
+			sum += (double)table[n];
+			count++;
+		}
 	return count ? (float)(sum / (double)count) : 0;
 }
 
-bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *const table[3], bp_error *error)
+bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *const table[3], spectral_ready_fn *ready, void *user,
+                        bp_error *error)
 {
 	const size_t p = d.phi_d, rows = (size_t)d.theta_h * d.theta_d, slice = d.theta_d * p;
 	uint8_t *present = malloc(rows);
@@ -128,8 +127,14 @@ bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *cons
 	if (!status)
 		status = runs_make(d, valid, present, &runs, error);
 	for (int c = 0; !status && c < 3; c++) {
-		float empty = start_value(d, valid, table[c]);
+		const uint8_t *any = memchr(valid, 1, rows * p);
+		const size_t first = any ? (size_t)(any - valid) / slice : 0;
+		if (ready)
+			ready(user, c, (first + 1) * slice);
+		float empty = start_value(slice, valid + first * slice, table[c] + first * slice);
 		for (size_t i = 0; i < d.theta_h; i++) {
+			if (ready)
+				ready(user, c, (i + 1) * slice);
 			if (memchr(present + i * d.theta_d, 0, d.theta_d))
 				fill_plane(fill, table[c] + i * slice, valid + i * slice, empty);
 			empty = table[c][i * slice]; /* a slice without a valid cell is flat */

@@ -117,18 +117,40 @@ static bp_status seen_cells(const struct lattice *lattice, struct lattice *out, 
 	return status;
 }
 
+/* Logarithms in the making: of the first `done` cells of every table, with their sums. */
+struct logs {
+	const struct lattice *lattice;
+	const int *order;
+	const struct spectral_model *fitted;
+	double sum[3];
+	size_t done[3];
+};
+
+static void logs_ready(void *user, int k, size_t end)
+{
+	enum { PIECE = 2048 }; /* sums are joined piece by piece, whatever is asked for */
+	struct logs *logs = user;
+	const struct lattice *lattice = logs->lattice;
+	const size_t cells = lattice_cells(lattice->dims);
+
+	for (size_t at; (at = logs->done[k]) < end;) {
+		const size_t count = cells - at < PIECE ? cells - at : PIECE;
+		logs->sum[k] += spectral_kernels_get()->spectral_logs(lattice->rgb[logs->order[k]] + at, lattice->valid + at, count,
+		                                                      1 / logs->fitted->unit, logs->fitted->coefficient[k] + at);
+		logs->done[k] += count;
+	}
+}
+
 /* The channels' logarithms, channel order[k] in coefficient[k], with values for the invalid cells; and the base. */
 static bp_status logs_make(const struct lattice *lattice, const int order[3], struct spectral_model *fitted, bp_error *error)
 {
-	const size_t cells = lattice_cells(lattice->dims);
+	struct logs logs = {.lattice = lattice, .order = order, .fitted = fitted};
 
 	stage_enter(STAGE_CLEAN);
-	for (int k = 0; k < 3; k++) {
-		const double sum = spectral_kernels_get()->spectral_logs(lattice->rgb[order[k]], lattice->valid, cells, 1 / fitted->unit,
-		                                                         fitted->coefficient[k]);
-		fitted->base[order[k]] = (float)(sum / (double)lattice->valid_count);
-	}
-	return spectral_fill(lattice->dims, lattice->valid, fitted->coefficient, error);
+	const bp_status status = spectral_fill(lattice->dims, lattice->valid, fitted->coefficient, logs_ready, &logs, error);
+	for (int k = 0; k < 3 && !status; k++)
+		fitted->base[order[k]] = (float)(logs.sum[k] / (double)lattice->valid_count);
+	return status;
 }
 
 /* Tables of logarithms become spectra, still of channels; rotation: their axes, of the channels in that order. */
@@ -231,6 +253,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		free(fitted);
 		return error_memory(error, 3 * cells * sizeof(float));
 	}
+	memory_prefer_huge(fitted->coefficient[0], 3 * cells * sizeof(float));
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
 	stage_enter(STAGE_REGRESSION);

@@ -96,14 +96,15 @@ static double largest_value(const struct lattice *lattice)
 double spectral_survey_unit(struct spectral_survey *sample, const struct lattice *lattice)
 {
 	double *v = sample->y[0];
-	const double largest = largest_value(lattice);
 	const size_t last = 3 * sample->n - 1, half = last / 2, high = last / 20 * 17 + last % 20 * 17 / 20;
-	const double least = largest * 0x1p-24;
+	const double median = select_kth(v, last + 1, half);
+	const double upper = select_kth(v + half, last + 1 - half, high - half);
+	/* Seldom asked for: a pass over the table. */
+	const bool bright = lattice->most > 0 && median >= lattice->most * 0x1p-24 && median > 0;
+	const double largest = bright ? lattice->most : largest_value(lattice), least = largest * 0x1p-24;
 
 	if (largest == 0)
 		return 1;
-	const double median = select_kth(v, last + 1, half);
-	const double upper = select_kth(v + half, last + 1 - half, high - half);
 	const double unit = sqrt(fmax(median, least)) * sqrt(fmax(upper, least)) / 100;
 	return fmin(fmax(unit, SPECTRAL_UNIT_LEAST), SPECTRAL_UNIT_MOST);
 }

@@ -20,18 +20,11 @@ static double KERNEL(float_sum)(const float *x, size_t n)
 
 static double KERNEL(spectral_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out)
 {
-	enum { PIECE = 2048 }; /* summed while it is in the cache */
-	double sum = 0;
-
-	for (size_t at = 0; at < n; at += PIECE) {
-		const size_t end = at + PIECE < n ? at + PIECE : n;
-		for (size_t k = at; k < end; k++) {
-			float l = fast_log2f((float)(1 + b[k] * factor)); /* rounded once */
-			out[k] = valid[k] ? l : 0;
-		}
-		sum += KERNEL(float_sum)(out + at, end - at);
+	for (size_t k = 0; k < n; k++) {
+		float l = fast_log2f((float)(1 + b[k] * factor)); /* rounded once */
+		out[k] = valid[k] ? l : 0;
 	}
-	return sum;
+	return KERNEL(float_sum)(out, n);
 }
 
 static double KERNEL(spectral_largest)(const double *b, const uint8_t *valid, size_t n)

@@ -9,45 +9,37 @@ typedef float KERNEL(floats8_unaligned) __attribute__((vector_size(32), aligned(
 #define FLOATS8_OF(p) ((KERNEL(floats8))(*(const KERNEL(floats8_unaligned) *)(p)))
 
 /*
- * Rows r..r+3, columns c..c+15; the sum over k runs in ascending order. The 4 x 2 accumulators stay in registers.
+ * `rows` rows, at most 4, times 8 * vectors columns, at most 64, 8 accumulators in all, which stay in registers: both are constants where
+ * this is inlined. The sum over k runs in ascending order.
  */
+static inline __attribute__((always_inline)) void KERNEL(product_part)(const float *x, size_t in_stride, size_t rows,
+                                                                       size_t count, const float *matrix, size_t columns,
+                                                                       size_t vectors, float *y, size_t out_stride)
+{
+	KERNEL(floats8) sum[8] = {{0}};
+
+	for (size_t k = 0; k < count; k++, matrix += columns)
+		for (size_t v = 0; v < vectors; v++)
+			for (size_t q = 0; q < rows; q++)
+				sum[q * vectors + v] += x[q * in_stride + k] * FLOATS8_OF(matrix + 8 * v);
+	for (size_t q = 0; q < rows; q++)
+		for (size_t v = 0; v < vectors; v++)
+			FLOATS8_AT(y + q * out_stride + 8 * v) = sum[q * vectors + v];
+}
+
+/* Four rows times 16 columns at once; of a row that is left, 64 columns, then 16. */
 static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix,
                                    size_t columns, float *out, size_t out_stride)
 {
-	for (size_t r = 0; r < rows; r += 4) {
-		/* The last rows are done again rather than not at all: the same values to the same places. */
-		const float *x0 = in + r * in_stride;
-		const float *x1 = in + (r + 1 < rows ? r + 1 : r) * in_stride;
-		const float *x2 = in + (r + 2 < rows ? r + 2 : r) * in_stride;
-		const float *x3 = in + (r + 3 < rows ? r + 3 : r) * in_stride;
-		float *y0 = out + r * out_stride;
-		float *y1 = out + (r + 1 < rows ? r + 1 : r) * out_stride;
-		float *y2 = out + (r + 2 < rows ? r + 2 : r) * out_stride;
-		float *y3 = out + (r + 3 < rows ? r + 3 : r) * out_stride;
-
-		for (size_t c = 0; c < columns; c += 16) {
-			KERNEL(floats8) a0 = {0}, b0 = {0}, a1 = {0}, b1 = {0}, a2 = {0}, b2 = {0}, a3 = {0}, b3 = {0};
-			const float *t = matrix + c;
-			for (size_t k = 0; k < count; k++, t += columns) {
-				const KERNEL(floats8) p = FLOATS8_OF(t), q = FLOATS8_OF(t + 8);
-				a0 += x0[k] * p;
-				b0 += x0[k] * q;
-				a1 += x1[k] * p;
-				b1 += x1[k] * q;
-				a2 += x2[k] * p;
-				b2 += x2[k] * q;
-				a3 += x3[k] * p;
-				b3 += x3[k] * q;
-			}
-			FLOATS8_AT(y3 + c) = a3;
-			FLOATS8_AT(y3 + c + 8) = b3;
-			FLOATS8_AT(y2 + c) = a2;
-			FLOATS8_AT(y2 + c + 8) = b2;
-			FLOATS8_AT(y1 + c) = a1;
-			FLOATS8_AT(y1 + c + 8) = b1;
-			FLOATS8_AT(y0 + c) = a0;
-			FLOATS8_AT(y0 + c + 8) = b0;
-		}
+	for (; rows >= 4; rows -= 4, in += 4 * in_stride, out += 4 * out_stride)
+		for (size_t c = 0; c < columns; c += 16)
+			KERNEL(product_part)(in, in_stride, 4, count, matrix + c, columns, 2, out + c, out_stride);
+	for (; rows; rows--, in += in_stride, out += out_stride) {
+		size_t c = 0;
+		for (; c + 64 <= columns; c += 64)
+			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 8, out + c, out_stride);
+		for (; c < columns; c += 16)
+			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 2, out + c, out_stride);
 	}
 }
 
