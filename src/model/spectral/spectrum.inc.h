@@ -8,22 +8,41 @@ typedef float KERNEL(floats8_unaligned) __attribute__((vector_size(32), aligned(
 #define FLOATS8_AT(p) (*(KERNEL(floats8_unaligned) *)(p))
 #define FLOATS8_OF(p) ((KERNEL(floats8))(*(const KERNEL(floats8_unaligned) *)(p)))
 
-/*
- * Rows r..r+3, columns c..c+15; the sum over k runs in ascending order. The 4 x 2 accumulators stay in registers.
- */
+/* `vectors` vectors of one row: their sums over k, in ascending order, stay in registers. */
+static inline __attribute__((always_inline)) void KERNEL(product_piece)(const float *x, size_t count, const float *matrix,
+                                                                        size_t columns, float *y, int vectors)
+{
+	KERNEL(floats8) sum[6];
+
+	for (int v = 0; v < vectors; v++)
+		sum[v] = (KERNEL(floats8)){0};
+	for (size_t k = 0; k < count; k++, matrix += columns)
+		for (int v = 0; v < vectors; v++)
+			sum[v] += x[k] * FLOATS8_OF(matrix + 8 * v);
+	for (int v = 0; v < vectors; v++)
+		FLOATS8_AT(y + 8 * v) = sum[v];
+}
+
+/* One row alone: as many sums side by side as keep the additions from waiting for each other. */
+static void KERNEL(product_row)(const float *x, size_t count, const float *matrix, size_t columns, float *y)
+{
+	size_t c = 0;
+	for (; c + 48 <= columns; c += 48)
+		KERNEL(product_piece)(x, count, matrix + c, columns, y + c, 6);
+	if (columns - c == 32)
+		KERNEL(product_piece)(x, count, matrix + c, columns, y + c, 4);
+	else if (columns - c == 16)
+		KERNEL(product_piece)(x, count, matrix + c, columns, y + c, 2);
+}
+
+/* Four rows at once, 16 columns: 4 x 2 sums. */
 static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix,
                                    size_t columns, float *out, size_t out_stride)
 {
-	for (size_t r = 0; r < rows; r += 4) {
-		/* The last rows are done again rather than not at all: the same values to the same places. */
-		const float *x0 = in + r * in_stride;
-		const float *x1 = in + (r + 1 < rows ? r + 1 : r) * in_stride;
-		const float *x2 = in + (r + 2 < rows ? r + 2 : r) * in_stride;
-		const float *x3 = in + (r + 3 < rows ? r + 3 : r) * in_stride;
-		float *y0 = out + r * out_stride;
-		float *y1 = out + (r + 1 < rows ? r + 1 : r) * out_stride;
-		float *y2 = out + (r + 2 < rows ? r + 2 : r) * out_stride;
-		float *y3 = out + (r + 3 < rows ? r + 3 : r) * out_stride;
+	size_t r = 0;
+	for (; r + 4 <= rows; r += 4) {
+		const float *x0 = in + r * in_stride, *x1 = x0 + in_stride, *x2 = x1 + in_stride, *x3 = x2 + in_stride;
+		float *y0 = out + r * out_stride, *y1 = y0 + out_stride, *y2 = y1 + out_stride, *y3 = y2 + out_stride;
 
 		for (size_t c = 0; c < columns; c += 16) {
 			KERNEL(floats8) a0 = {0}, b0 = {0}, a1 = {0}, b1 = {0}, a2 = {0}, b2 = {0}, a3 = {0}, b3 = {0};
@@ -39,16 +58,36 @@ static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t row
 				a3 += x3[k] * p;
 				b3 += x3[k] * q;
 			}
-			FLOATS8_AT(y3 + c) = a3;
-			FLOATS8_AT(y3 + c + 8) = b3;
-			FLOATS8_AT(y2 + c) = a2;
-			FLOATS8_AT(y2 + c + 8) = b2;
-			FLOATS8_AT(y1 + c) = a1;
-			FLOATS8_AT(y1 + c + 8) = b1;
 			FLOATS8_AT(y0 + c) = a0;
 			FLOATS8_AT(y0 + c + 8) = b0;
+			FLOATS8_AT(y1 + c) = a1;
+			FLOATS8_AT(y1 + c + 8) = b1;
+			FLOATS8_AT(y2 + c) = a2;
+			FLOATS8_AT(y2 + c + 8) = b2;
+			FLOATS8_AT(y3 + c) = a3;
+			FLOATS8_AT(y3 + c + 8) = b3;
 		}
 	}
+	for (; r < rows; r++)
+		KERNEL(product_row)(in + r * in_stride, count, matrix, columns, out + r * out_stride);
+}
+
+static void KERNEL(span_unfold)(const float *sum, const float *difference, size_t n, float *out)
+{
+	const size_t half = n / 2;
+	size_t k = 0;
+
+	for (; k + 8 <= half; k += 8) {
+		const KERNEL(floats8) s = FLOATS8_OF(sum + k), d = FLOATS8_OF(difference + k), back = s - d;
+		FLOATS8_AT(out + k) = s + d;
+		FLOATS8_AT(out + n - 8 - k) = __builtin_shufflevector(back, back, 7, 6, 5, 4, 3, 2, 1, 0);
+	}
+	for (; k < half; k++) {
+		out[k] = sum[k] + difference[k];
+		out[n - 1 - k] = sum[k] - difference[k];
+	}
+	if (n % 2)
+		out[half] = sum[half];
 }
 
 #define CDF97_A (-1.586134342059924f)
