@@ -11,12 +11,12 @@
 enum { STEP = 8 }; /* lanes of a kind are a multiple of it */
 
 /*
- * A field after the wavelets: [row][width], even harmonics first, then odd ones, of either kind up to the last with a term; the width
- * is that of some planes.
+ * A field after the wavelets: planes of the rows that are wanted, [plane][row][SPECTRUM_BLOCK], their lanes first of even harmonics, then
+ * of odd ones, of either kind up to the last with a term.
  */
 struct lanes {
 	float *value;
-	uint32_t even, odd, width;
+	uint32_t even, odd, planes;
 };
 
 struct spectrum_rows {
@@ -27,15 +27,21 @@ struct spectrum_rows {
 	uint16_t *span;      /* of the rows that are wanted */
 	struct span_cosines *cosines;
 	struct lanes field[SPECTRUM_FIELDS];
-	float *plane;
-	float *line; /* half: whole rows, before every second cell is taken */
+	float *lanes; /* of a few rows, side by side */
+	float *line;  /* half: whole rows, before every second cell is taken */
 };
+
+/* Where row r of a half table is among all. */
+static uint32_t row_of_half(const struct spectrum_rows *t, uint32_t r)
+{
+	return 2 * (r / t->wide * t->dims.theta_d + r % t->wide);
+}
 
 bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t harmonics, bool half, struct spectrum_rows **out,
                                bp_error *error)
 {
 	const struct lattice_dims d = inverse->dims;
-	const size_t rows = (size_t)d.theta_h * d.theta_d, plane_bytes = rows * SPECTRUM_BLOCK * sizeof(float);
+	const size_t rows = (size_t)d.theta_h * d.theta_d, lanes_bytes = SPAN_ROWS * (d.phi_d + 4 * STEP) * sizeof(float);
 	struct spectrum_rows *t = calloc(1, sizeof *t);
 
 	if (!t)
@@ -46,13 +52,13 @@ bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t 
 	t->high = half ? d.theta_h / 2 : d.theta_h;
 	t->wide = half ? d.theta_d / 2 : d.theta_d;
 	t->span = malloc(rows * sizeof *t->span);
-	t->plane = memory_alloc(plane_bytes);
+	t->lanes = malloc(lanes_bytes);
 	t->line = malloc(SPAN_ROWS * (size_t)d.phi_d * sizeof(float));
-	bp_status status = t->span && t->plane && t->line ? BP_OK : error_memory(error, plane_bytes);
+	bp_status status = t->span && t->lanes && t->line ? BP_OK : error_memory(error, lanes_bytes);
 	if (!status) {
 		spans_find(d, t->span);
 		for (uint32_t r = 0; r < t->high * t->wide && half; r++) /* never before where it is read */
-			t->span[r] = t->span[2 * (r / t->wide * d.theta_d + r % t->wide)];
+			t->span[r] = t->span[row_of_half(t, r)];
 		status = span_cosines_create(d.phi_d, t->span, (size_t)t->high * t->wide, harmonics, true, &t->cosines, error);
 	}
 	if (status)
@@ -70,31 +76,29 @@ void spectrum_rows_free(struct spectrum_rows *t)
 		free(t->field[f].value);
 	span_cosines_free(t->cosines);
 	free(t->span);
-	free(t->plane);
+	free(t->lanes);
 	free(t->line);
 	free(t);
 }
 
-/* The lanes first..first + SPECTRUM_BLOCK - 1. */
-static void lanes_invert(struct spectrum_rows *t, const struct spectrum_term *terms, const uint32_t *start,
-                         const struct lanes *lanes, uint32_t first)
+/* The lanes first..first + SPECTRUM_BLOCK - 1 of all rows; those that are wanted come to the front of the plane. */
+static void plane_invert(const struct spectrum_rows *t, const struct spectrum_term *terms, const uint32_t *start,
+                         const struct lanes *lanes, uint32_t first, float *plane)
 {
 	const struct lattice_dims d = t->dims;
-	const size_t every = t->half ? 2 : 1;
-	float *out = lanes->value + first;
 
-	memset(t->plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *t->plane);
+	memset(plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *plane);
 	for (uint32_t q = 0; q < SPECTRUM_BLOCK; q++) {
 		const uint32_t lane = first + q, m = lane < lanes->even ? 2 * lane : 2 * (lane - lanes->even) + 1;
 		if (m >= d.phi_d)
 			continue;
 		for (uint32_t i = start[m]; i < start[m + 1]; i++)
-			t->plane[(size_t)terms[i].place * SPECTRUM_BLOCK + q] = terms[i].value;
+			plane[(size_t)terms[i].place * SPECTRUM_BLOCK + q] = terms[i].value;
 	}
-	spectral_kernels_get()->cdf97_plane(t->plane, d.theta_h, d.theta_d, t->inverse->levels, t->half);
-	for (size_t i = 0; i < t->high; i++)
-		for (size_t j = 0; j < t->wide; j++, out += lanes->width)
-			memcpy(out, t->plane + (i * d.theta_d + j) * every * SPECTRUM_BLOCK, SPECTRUM_BLOCK * sizeof *out);
+	spectral_kernels_get()->cdf97_plane(plane, d.theta_h, d.theta_d, t->inverse->levels, t->half);
+	for (uint32_t r = 1; r < t->high * t->wide && t->half; r++)
+		memcpy(plane + (size_t)r * SPECTRUM_BLOCK, plane + (size_t)row_of_half(t, r) * SPECTRUM_BLOCK,
+		       SPECTRUM_BLOCK * sizeof *plane);
 }
 
 /* Lanes up to the last harmonic of a parity with a term. */
@@ -115,13 +119,15 @@ bp_status spectrum_rows_field(struct spectrum_rows *t, int field, const struct s
 	free(lanes->value);
 	lanes->even = lanes_needed(start, t->dims.phi_d, 0);
 	lanes->odd = lanes_needed(start, t->dims.phi_d, 1);
-	lanes->width = (lanes->even + lanes->odd + SPECTRUM_BLOCK - 1) / SPECTRUM_BLOCK * SPECTRUM_BLOCK;
-	const size_t bytes = (size_t)lanes->width * t->high * t->wide * sizeof(float);
-	lanes->value = memory_alloc(bytes ? bytes : 1);
+	lanes->planes = (lanes->even + lanes->odd + SPECTRUM_BLOCK - 1) / SPECTRUM_BLOCK;
+	/* Of a half table the last plane takes more room while it is made. */
+	const size_t wanted = (size_t)t->high * t->wide, all = (size_t)t->dims.theta_h * t->dims.theta_d;
+	const size_t bytes = lanes->planes ? (wanted * (lanes->planes - 1) + all) * SPECTRUM_BLOCK * sizeof(float) : 1;
+	lanes->value = memory_alloc(bytes);
 	if (!lanes->value)
 		return error_memory(error, bytes);
-	for (uint32_t first = 0; first < lanes->width; first += SPECTRUM_BLOCK)
-		lanes_invert(t, terms, start, lanes, first);
+	for (uint32_t n = 0; n < lanes->planes; n++)
+		plane_invert(t, terms, start, lanes, n * SPECTRUM_BLOCK, lanes->value + n * wanted * SPECTRUM_BLOCK);
 	return BP_OK;
 }
 
@@ -146,13 +152,21 @@ void spectrum_rows_cells(struct spectrum_rows *t, int field, uint32_t first, uin
 	const struct lanes *lanes = &t->field[field];
 	const uint32_t p = t->dims.phi_d;
 	const uint16_t *span = t->span + first;
-	const size_t width = lanes->width, apart = t->half ? p : stride;
+	const size_t width = (size_t)lanes->planes * SPECTRUM_BLOCK, plane = (size_t)t->high * t->wide * SPECTRUM_BLOCK;
+	const size_t apart = t->half ? p : stride;
 	float *cells = t->half ? t->line : out;
 
+	for (uint32_t n = 0; n < lanes->planes; n++) {
+		const float *from = lanes->value + n * plane + (size_t)first * SPECTRUM_BLOCK;
+		for (uint32_t r = 0; r < count; r++, from += SPECTRUM_BLOCK) {
+			__builtin_prefetch(from + (size_t)SPAN_ROWS * SPECTRUM_BLOCK); /* so many planes at once no processor foresees */
+			memcpy(t->lanes + r * width + n * SPECTRUM_BLOCK, from, SPECTRUM_BLOCK * sizeof *from);
+		}
+	}
 	for (uint32_t r = 0, run; r < count; r += run) {
 		for (run = 1; r + run < count && span[r + run] == span[r];)
 			run++;
-		const float *even = lanes->value + (first + r) * width, *odd = even + lanes->even;
+		const float *even = t->lanes + r * width, *odd = even + lanes->even;
 		const struct span_lanes in = {even, odd, width, lanes_used(even, width, run, lanes->even),
 		                              lanes_used(odd, width, run, lanes->odd)};
 		span_inverse(t->cosines, span[r], &in, run, cells + r * apart, apart);
