@@ -27,6 +27,7 @@ struct spectrum_rows {
 	uint16_t *span;      /* of the rows that are wanted */
 	struct span_cosines *cosines;
 	struct lanes field[SPECTRUM_FIELDS];
+	float *plane; /* half: a whole one, before its wanted rows are taken */
 	float *lanes; /* of a few rows, side by side */
 	float *line;  /* half: whole rows, before every second cell is taken */
 };
@@ -52,9 +53,10 @@ bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t 
 	t->high = half ? d.theta_h / 2 : d.theta_h;
 	t->wide = half ? d.theta_d / 2 : d.theta_d;
 	t->span = malloc(rows * sizeof *t->span);
+	t->plane = half ? memory_alloc(rows * SPECTRUM_BLOCK * sizeof(float)) : NULL;
 	t->lanes = malloc(lanes_bytes);
 	t->line = malloc(SPAN_ROWS * (size_t)d.phi_d * sizeof(float));
-	bp_status status = t->span && t->lanes && t->line ? BP_OK : error_memory(error, lanes_bytes);
+	bp_status status = t->span && (t->plane || !half) && t->lanes && t->line ? BP_OK : error_memory(error, lanes_bytes);
 	if (!status) {
 		spans_find(d, t->span);
 		for (uint32_t r = 0; r < t->high * t->wide && half; r++) /* never before where it is read */
@@ -76,16 +78,18 @@ void spectrum_rows_free(struct spectrum_rows *t)
 		free(t->field[f].value);
 	span_cosines_free(t->cosines);
 	free(t->span);
+	free(t->plane);
 	free(t->lanes);
 	free(t->line);
 	free(t);
 }
 
-/* The lanes first..first + SPECTRUM_BLOCK - 1 of all rows; those that are wanted come to the front of the plane. */
+/* The lanes first..first + SPECTRUM_BLOCK - 1 of the rows that are wanted, to out[row][SPECTRUM_BLOCK]. */
 static void plane_invert(const struct spectrum_rows *t, const struct spectrum_term *terms, const uint32_t *start,
-                         const struct lanes *lanes, uint32_t first, float *plane)
+                         const struct lanes *lanes, uint32_t first, float *out)
 {
 	const struct lattice_dims d = t->dims;
+	float *plane = t->half ? t->plane : out;
 
 	memset(plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *plane);
 	for (uint32_t q = 0; q < SPECTRUM_BLOCK; q++) {
@@ -96,8 +100,8 @@ static void plane_invert(const struct spectrum_rows *t, const struct spectrum_te
 			plane[(size_t)terms[i].place * SPECTRUM_BLOCK + q] = terms[i].value;
 	}
 	spectral_kernels_get()->cdf97_plane(plane, d.theta_h, d.theta_d, t->inverse->levels, t->half);
-	for (uint32_t r = 1; r < t->high * t->wide && t->half; r++)
-		memcpy(plane + (size_t)r * SPECTRUM_BLOCK, plane + (size_t)row_of_half(t, r) * SPECTRUM_BLOCK,
+	for (uint32_t r = 0; r < t->high * t->wide && t->half; r++)
+		memcpy(out + (size_t)r * SPECTRUM_BLOCK, plane + (size_t)row_of_half(t, r) * SPECTRUM_BLOCK,
 		       SPECTRUM_BLOCK * sizeof *plane);
 }
 
@@ -120,14 +124,12 @@ bp_status spectrum_rows_field(struct spectrum_rows *t, int field, const struct s
 	lanes->even = lanes_needed(start, t->dims.phi_d, 0);
 	lanes->odd = lanes_needed(start, t->dims.phi_d, 1);
 	lanes->planes = (lanes->even + lanes->odd + SPECTRUM_BLOCK - 1) / SPECTRUM_BLOCK;
-	/* Of a half table the last plane takes more room while it is made. */
-	const size_t wanted = (size_t)t->high * t->wide, all = (size_t)t->dims.theta_h * t->dims.theta_d;
-	const size_t bytes = lanes->planes ? (wanted * (lanes->planes - 1) + all) * SPECTRUM_BLOCK * sizeof(float) : 1;
-	lanes->value = memory_alloc(bytes);
+	const size_t plane = (size_t)t->high * t->wide * SPECTRUM_BLOCK, bytes = lanes->planes * plane * sizeof(float);
+	lanes->value = memory_alloc(bytes ? bytes : 1);
 	if (!lanes->value)
 		return error_memory(error, bytes);
 	for (uint32_t n = 0; n < lanes->planes; n++)
-		plane_invert(t, terms, start, lanes, n * SPECTRUM_BLOCK, lanes->value + n * wanted * SPECTRUM_BLOCK);
+		plane_invert(t, terms, start, lanes, n * SPECTRUM_BLOCK, lanes->value + n * plane);
 	return BP_OK;
 }
 
