@@ -60,7 +60,8 @@ static void span_forward_is_the_sum_written_out(void **unused)
 		const uint32_t p = d.phi_d;
 		uint16_t *span = spans_of(d);
 		struct span_cosines *cosines = NULL;
-		assert_int_equal(span_cosines_create(d, span, d.phi_d, false, &cosines, NULL), BP_OK);
+		assert_int_equal(span_cosines_create(d.phi_d, span, (size_t)d.theta_h * d.theta_d, d.phi_d, false, &cosines, NULL),
+		                 BP_OK);
 		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
 			float row[1024], cells[1024];
 			const uint32_t s = span[r], first = (p - s) / 2;
@@ -95,8 +96,16 @@ static float *inverse_of(struct lattice_dims d, const float *spectrum, bool half
 	for (uint32_t r = 0; r < rows; r += SPECTRUM_BLOCK) {
 		const uint32_t count = rows - r < SPECTRUM_BLOCK ? rows - r : SPECTRUM_BLOCK;
 		spectrum_rows_cells(t, 0, r, count, piece, 1024);
-		for (uint32_t n = 0; n < count; n++)
+		for (uint32_t n = 0; n < count; n++) {
+			uint32_t first, seen;
+			spectrum_rows_seen(t, r + n, &first, &seen);
+			assert_true(seen && first + seen <= width);
+			for (uint32_t k = 0; k < width; k++) {
+				const uint32_t inside = k < first ? first : k < first + seen ? k : first + seen - 1;
+				assert_true(piece[n * 1024 + k] == piece[n * 1024 + inside]);
+			}
 			memcpy(table + (size_t)(r + n) * width, piece + n * 1024, width * sizeof *table);
+		}
 	}
 	free(terms);
 	free(piece);

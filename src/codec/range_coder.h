@@ -83,7 +83,7 @@ static inline void range_decoder_shift(struct range_decoder *decoder)
 }
 static inline void range_decoder_refill(struct range_decoder *decoder)
 {
-	while (decoder->range < 1u << 24) {
+	while (__builtin_expect(decoder->range < 1u << 24, 0)) { /* about one bit in twenty */
 		decoder->range <<= 8;
 		range_decoder_shift(decoder);
 	}

@@ -27,71 +27,67 @@ static uint32_t padded(uint32_t columns) { return (columns + COLUMNS - 1) / COLU
 void spans_find(struct lattice_dims d, uint16_t *span)
 {
 	const uint32_t half = (d.phi_d + 1) / 2;
-	double least[LATTICE_EXTENT_MAX], sine;
+	double least[LATTICE_EXTENT_MAX], cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX], sine;
 
 	/* |cos phi_d| at its least in cell k of the first half: at its end, where it is not the middle one of an odd number. */
 	for (uint32_t k = 0; k < half; k++)
 		quarter_cos_sin(2 * (k + 1) <= d.phi_d ? 2.0 * (k + 1) / d.phi_d : 1, &least[k], &sine);
-	for (uint32_t i = 0; i < d.theta_h; i++)
+	for (uint32_t j = 0; j < d.theta_d; j++)
+		quarter_cos_sin((double)j / d.theta_d, &cos_d[j], &sin_d[j]);
+	for (uint32_t i = 0; i < d.theta_h; i++) {
+		double cos_h, sin_h;
+		uint32_t k = 0; /* the first that can be seen, or `half`: the larger theta_d, the later */
+		quarter_cos_sin((double)i / d.theta_h * ((double)i / d.theta_h), &cos_h, &sin_h);
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			double cos_h, sin_h, cos_d, sin_d;
-			uint32_t low = 0, high = half; /* the first that can be seen lies between them; none can where it is `half` */
-			quarter_cos_sin((double)i / d.theta_h * ((double)i / d.theta_h), &cos_h, &sin_h);
-			quarter_cos_sin((double)j / d.theta_d, &cos_d, &sin_d);
-			while (low < high) {
-				const uint32_t k = (low + high) / 2;
-				if (cos_h * cos_d - sin_h * sin_d * least[k] > SPAN_MARGIN)
-					high = k;
-				else
-					low = k + 1;
-			}
-			*span++ = (uint16_t)(low < half ? d.phi_d - 2 * low : 2 - d.phi_d % 2);
+			while (k < half && !(cos_h * cos_d[j] - sin_h * sin_d[j] * least[k] > SPAN_MARGIN))
+				k++;
+			*span++ = (uint16_t)(k < half ? d.phi_d - 2 * k : 2 - d.phi_d % 2);
 		}
+	}
 }
 
-/* The table of span n, of p cells; NULL where there is no memory. */
-static float *matrix_make(uint32_t n, uint32_t p, uint32_t parity, uint32_t harmonics, bool inverse)
+/* The tables of span n, of p cells; false where there is no memory. */
+static bool matrices_make(uint32_t n, uint32_t p, uint32_t harmonics, bool inverse, struct matrices *out)
 {
-	const uint32_t count = parity ? n / 2 : (n + 1) / 2, stride = padded(count), most = (harmonics + 1 - parity) / 2;
 	const double scale = inverse ? sqrt(2.0 / p) : sqrt(2.0 * p) / n; /* g sqrt(2/n), and sqrt(2/n) / g */
-	float *matrix = calloc((size_t)(count ? count * stride : 1), sizeof *matrix);
 	float *cosine = malloc(4 * (size_t)n * sizeof *cosine);
+	bool good = cosine != NULL;
 
-	for (uint32_t a = 0; a <= n && matrix && cosine; a++) {
+	for (uint32_t a = 0; a <= n && good; a++) {
 		const float x = (float)(scale * cosines_exact(a, n));
 		cosine[a] = cosine[(4 * n - a) % (4 * n)] = x;
 		cosine[2 * n - a] = cosine[2 * n + a] = -x;
 	}
-	for (uint32_t r = 0; r < count && r < most && matrix && cosine; r++) {
-		const uint32_t m = 2 * r + parity;
-		for (uint32_t k = 0, a = m; k < count; k++) {
-			matrix[inverse ? (size_t)r * stride + k : (size_t)k * stride + r] = m ? cosine[a] : (float)(scale * sqrt(0.5));
-			a += 2 * m;
-			a -= a >= 4 * n ? 4 * n : 0;
+	for (uint32_t parity = 0; parity < 2 && good; parity++) {
+		const uint32_t count = parity ? n / 2 : (n + 1) / 2, stride = padded(count), most = (harmonics + 1 - parity) / 2;
+		float *matrix = out->matrix[parity] = calloc((size_t)(count ? count * stride : 1), sizeof *matrix);
+		good = matrix != NULL;
+		for (uint32_t r = 0; r < count && r < most && good; r++) {
+			const uint32_t m = 2 * r + parity;
+			for (uint32_t k = 0, a = m; k < count; k++) {
+				matrix[inverse ? (size_t)r * stride + k : (size_t)k * stride + r] = m ? cosine[a] : (float)(scale * sqrt(0.5));
+				a += 2 * m;
+				a -= a >= 4 * n ? 4 * n : 0;
+			}
 		}
 	}
-	if (!cosine) {
-		free(matrix);
-		matrix = NULL;
-	}
 	free(cosine);
-	return matrix;
+	return good;
 }
 
-bp_status span_cosines_create(struct lattice_dims d, const uint16_t *span, uint32_t harmonics, bool inverse,
+bp_status span_cosines_create(uint32_t p, const uint16_t *span, size_t rows, uint32_t harmonics, bool inverse,
                               struct span_cosines **out, bp_error *error)
 {
-	const size_t bytes = sizeof(struct span_cosines) + ((size_t)d.phi_d + 1) * sizeof(struct matrices);
+	const size_t bytes = sizeof(struct span_cosines) + ((size_t)p + 1) * sizeof(struct matrices);
 	struct span_cosines *c = calloc(1, bytes);
 	bool good = c != NULL;
 
 	if (c) {
-		c->p = d.phi_d;
-		good = (c->work = malloc(4 * (size_t)padded(d.phi_d) * SPAN_ROWS * sizeof *c->work)) != NULL;
+		c->p = p;
+		good = (c->work = malloc(4 * (size_t)padded(p) * SPAN_ROWS * sizeof *c->work)) != NULL;
 	}
-	for (size_t r = 0; r < (size_t)d.theta_h * d.theta_d && good; r++)
-		for (uint32_t parity = 0; parity < 2 && !c->of[span[r]].matrix[parity] && good; parity++)
-			good = (c->of[span[r]].matrix[parity] = matrix_make(span[r], d.phi_d, parity, harmonics, inverse)) != NULL;
+	for (size_t r = 0; r < rows && good; r++)
+		good = c->of[span[r]].matrix[0] || matrices_make(span[r], p, harmonics, inverse, &c->of[span[r]]);
 	if (!good) {
 		span_cosines_free(c);
 		return error_memory(error, bytes);
@@ -141,17 +137,12 @@ void span_inverse(struct span_cosines *c, uint32_t n, const struct span_lanes *i
 	                        padded(more), sum, stride);
 	kernels->cosine_product(in->odd, in->stride, rows, in->odd_count < half ? in->odd_count : half, c->of[n].matrix[1],
 	                        padded(half), difference, stride);
-	for (size_t r = 0; r < rows; r++, sum += stride, difference += stride, out += out_stride) {
+	for (size_t r = 0; r < rows; r++, out += out_stride) {
 		float *x = out + first;
-		for (uint32_t k = 0; k < half; k++) {
-			x[k] = sum[k] + difference[k];
-			x[n - 1 - k] = sum[k] - difference[k];
-		}
-		if (more > half)
-			x[half] = sum[half];
-		for (uint32_t k = 0; k < first; k++) {
+		kernels->span_unfold(sum + r * stride, difference + r * stride, n, x);
+		for (uint32_t k = 0; k < first; k++)
 			out[k] = x[0];
-			out[p - 1 - k] = x[n - 1];
-		}
+		for (uint32_t k = first + n; k < p; k++)
+			out[k] = x[n - 1];
 	}
 }

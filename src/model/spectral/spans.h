@@ -25,8 +25,11 @@ void spans_find(struct lattice_dims dims, uint16_t *span);
 /* The cosines of rows of every span in use. */
 struct span_cosines;
 
-/* inverse: for span_inverse, otherwise for span_forward; harmonics: more are not worked with, P for all. */
-bp_status span_cosines_create(struct lattice_dims dims, const uint16_t *span, uint32_t harmonics, bool inverse,
+/*
+ * For rows of p cells of the given spans. inverse: for span_inverse, otherwise for span_forward; harmonics: more are not worked with, p
+ * for all.
+ */
+bp_status span_cosines_create(uint32_t p, const uint16_t *span, size_t rows, uint32_t harmonics, bool inverse,
                               struct span_cosines **out, bp_error *error);
 void span_cosines_free(struct span_cosines *cosines); /* NULL is allowed */
 

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "error.h"
 #include "memory.h"
@@ -58,6 +59,26 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, take, user, error);
 }
 
+/* `bytes` bytes of values of `size` bytes, each as the one at `value`; twice as many from step to step. */
+static void repeat(uint8_t *to, const uint8_t *value, size_t size, size_t bytes)
+{
+	for (size_t done = 0, here = size; done < bytes; done += here) {
+		here = done ? done : size;
+		here = here < bytes - done ? here : bytes - done;
+		memcpy(to + done, done ? to : value, here);
+	}
+}
+
+/* The cells on either side of a block that is alone, in a row of p values of `size` bytes. */
+static void sides_fill(const struct spectral_block *block, void *row, size_t size, uint32_t p)
+{
+	const uint32_t end = block->column + block->width;
+	uint8_t *own = (uint8_t *)row + block->column * size, *behind = (uint8_t *)row + end * size;
+
+	repeat(row, own, size, block->column * size);
+	repeat(behind, behind - size, size, (p - end) * size);
+}
+
 struct values_target {
 	const struct spectral_model *model;
 	const struct expansion *out;
@@ -72,6 +93,8 @@ static void values_take(void *user, const struct spectral_block *block)
 
 	spectral_kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base,
 	                                        (const float(*)[3])m->rotation, spectral_most(m->unit), rgb, p);
+	for (int c = 0; c < 3 && block->alone; c++)
+		sides_fill(block, target->out->rgb[c] + block->row * p, sizeof(float), (uint32_t)p);
 }
 
 bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, bool half, struct expansion *out, bp_error *error)
@@ -86,22 +109,25 @@ struct codes_target {
 	int channels;
 	uint16_t *out;
 	size_t stride;
+	uint32_t cells; /* of a row */
 };
 
 static void codes_take(void *user, const struct spectral_block *block)
 {
 	const struct codes_target *target = user;
 	const struct spectral_model *m = target->model;
-	uint16_t *out = target->out + block->row * target->stride + (size_t)block->column * (size_t)target->channels;
+	uint16_t *row = target->out + block->row * target->stride, *out = row + (size_t)block->column * (size_t)target->channels;
 
 	spectral_kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base,
 	                                       (const float(*)[3])m->rotation, spectral_most(m->unit), target->channels, out,
 	                                       target->stride);
+	if (block->alone)
+		sides_fill(block, row, (size_t)target->channels * sizeof *row, target->cells);
 }
 
 bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out,
                                 size_t stride, bp_error *error)
 {
-	struct codes_target target = {model, channels, out, stride};
+	struct codes_target target = {model, channels, out, stride, model->dims.phi_d / (half ? 2 : 1)};
 	return expand(model, layers, half, codes_take, &target, error);
 }

@@ -21,8 +21,8 @@ bp_status spectral_expand_rows(const struct spectral_model *model, uint32_t laye
                                void *user, bp_error *error)
 {
 	const struct lattice_dims d = model->dims;
-	const uint32_t count = d.theta_h * d.theta_d / (half ? 4 : 1), width = half ? d.phi_d / 2 : d.phi_d;
-	const size_t stride = ((size_t)d.phi_d + 15) / 16 * 16, piece = SPECTRUM_BLOCK * stride;
+	const uint32_t count = d.theta_h * d.theta_d / (half ? 4 : 1);
+	const size_t stride = d.phi_d + 15, piece = SPECTRUM_BLOCK * stride;
 	struct spectrum_inverse *inverse = NULL;
 	struct spectrum_rows *rows = NULL;
 	struct spectral_terms terms = {0};
@@ -38,16 +38,16 @@ bp_status spectral_expand_rows(const struct spectral_model *model, uint32_t laye
 	for (int f = 0; !status && f < 3; f++)
 		status = spectrum_rows_field(rows, f, terms.term, terms.start + (size_t)f * d.phi_d, error);
 	for (uint32_t r = 0; !status && r < count; r += SPECTRUM_BLOCK) {
-		const struct spectral_block block = {
-			.field = {fields, fields + piece, fields + 2 * piece},
-			.row = r,
-			.rows = count - r < SPECTRUM_BLOCK ? count - r : SPECTRUM_BLOCK,
-			.width = width,
-			.stride = stride,
-		};
+		const uint32_t here = count - r < SPECTRUM_BLOCK ? count - r : SPECTRUM_BLOCK;
 		for (int f = 0; f < 3; f++)
-			spectrum_rows_cells(rows, f, r, (uint32_t)block.rows, fields + (size_t)f * piece, stride);
-		take(user, &block);
+			spectrum_rows_cells(rows, f, r, here, fields + (size_t)f * piece, stride);
+		for (uint32_t n = 0; n < here; n++) {
+			struct spectral_block block = {.row = r + n, .rows = 1, .stride = stride, .alone = true};
+			spectrum_rows_seen(rows, r + n, &block.column, &block.width);
+			for (int f = 0; f < 3; f++)
+				block.field[f] = fields + (size_t)f * piece + n * stride + block.column;
+			take(user, &block);
+		}
 	}
 	spectral_terms_free(&terms);
 	spectrum_rows_free(rows);

@@ -22,6 +22,9 @@ struct spectral_kernels {
 	void (*cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix, size_t columns,
 	                       float *out, size_t out_stride);
 
+	/* n values from sums x_k + x_{n-1-k} and differences, n/2 of them, where n is odd one more sum: the middle value. out is none of them. */
+	void (*span_unfold)(const float *sum, const float *difference, size_t n, float *out);
+
 	/* The steps of cosines.h; rows of 16 values. */
 	void (*cosine_fold)(const float *x, size_t n, float *sum, float *difference);
 	void (*cosine_rotate)(const float *x, size_t n, const float *angle, float *a, float *b);

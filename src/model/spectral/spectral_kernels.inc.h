@@ -10,6 +10,7 @@
 
 const struct spectral_kernels KERNEL(spectral_kernels) = {
 	.cosine_product = KERNEL(cosine_product),
+	.span_unfold = KERNEL(span_unfold),
 	.cosine_fold = KERNEL(cosine_fold),
 	.cosine_rotate = KERNEL(cosine_rotate),
 	.cosine_join = KERNEL(cosine_join),

@@ -43,7 +43,8 @@ bp_status spectrum_create(struct lattice_dims dims, bool cut, struct spectrum **
 		status = t->span ? BP_OK : error_memory(error, (size_t)dims.theta_h * dims.theta_d * sizeof *t->span);
 		if (!status) {
 			spans_find(dims, t->span);
-			status = span_cosines_create(dims, t->span, dims.phi_d, false, &t->cut, error);
+			status =
+				span_cosines_create(dims.phi_d, t->span, (size_t)dims.theta_h * dims.theta_d, dims.phi_d, false, &t->cut, error);
 		}
 	}
 	if (status)

@@ -27,7 +27,7 @@ static inline __attribute__((always_inline)) void KERNEL(product_part)(const flo
 			FLOATS8_AT(y + q * out_stride + 8 * v) = sum[q * vectors + v];
 }
 
-/* Four rows times 16 columns at once; of a row that is left, 64 columns, then 16. */
+/* Four rows times 16 columns at once; of a row that is left, 48 columns, then 16. */
 static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix,
                                    size_t columns, float *out, size_t out_stride)
 {
@@ -36,11 +36,29 @@ static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t row
 			KERNEL(product_part)(in, in_stride, 4, count, matrix + c, columns, 2, out + c, out_stride);
 	for (; rows; rows--, in += in_stride, out += out_stride) {
 		size_t c = 0;
-		for (; c + 64 <= columns; c += 64)
-			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 8, out + c, out_stride);
+		for (; c + 48 <= columns; c += 48)
+			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 6, out + c, out_stride);
 		for (; c < columns; c += 16)
 			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 2, out + c, out_stride);
 	}
+}
+
+static void KERNEL(span_unfold)(const float *sum, const float *difference, size_t n, float *out)
+{
+	const size_t half = n / 2;
+	size_t k = 0;
+
+	for (; k + 8 <= half; k += 8) {
+		const KERNEL(floats8) s = FLOATS8_OF(sum + k), d = FLOATS8_OF(difference + k), back = s - d;
+		FLOATS8_AT(out + k) = s + d;
+		FLOATS8_AT(out + n - 8 - k) = __builtin_shufflevector(back, back, 7, 6, 5, 4, 3, 2, 1, 0);
+	}
+	for (; k < half; k++) {
+		out[k] = sum[k] + difference[k];
+		out[n - 1 - k] = sum[k] - difference[k];
+	}
+	if (n % 2)
+		out[half] = sum[half];
 }
 
 #define CDF97_A (-1.586134342059924f)

@@ -8,13 +8,15 @@
 #include "spans.h"
 #include "spectral_kernels.h"
 
+enum { STEP = 8 }; /* lanes of a kind are a multiple of it */
+
 /*
- * A field after the wavelets: [row][width], even harmonics first, then odd ones, of either kind as many blocks of SPECTRUM_BLOCK as there
- * are up to the last with a term.
+ * A field after the wavelets: planes of the rows that are wanted, [plane][row][SPECTRUM_BLOCK], their lanes first of even harmonics, then
+ * of odd ones, of either kind up to the last with a term.
  */
 struct lanes {
 	float *value;
-	uint32_t even, odd; /* lanes; together the width */
+	uint32_t even, odd, planes;
 };
 
 struct spectrum_rows {
@@ -22,18 +24,25 @@ struct spectrum_rows {
 	const struct spectrum_inverse *inverse;
 	bool half;
 	uint32_t high, wide; /* rows that are wanted: along theta_h, along theta_d */
-	uint16_t *span;
+	uint16_t *span;      /* of the rows that are wanted */
 	struct span_cosines *cosines;
 	struct lanes field[SPECTRUM_FIELDS];
-	float *plane;
-	float *line; /* half: whole rows, before every second cell is taken */
+	float *plane; /* half: a whole one, before its wanted rows are taken */
+	float *lanes; /* of a few rows, side by side */
+	float *line;  /* half: whole rows, before every second cell is taken */
 };
+
+/* Where row r of a half table is among all. */
+static uint32_t row_of_half(const struct spectrum_rows *t, uint32_t r)
+{
+	return 2 * (r / t->wide * t->dims.theta_d + r % t->wide);
+}
 
 bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t harmonics, bool half, struct spectrum_rows **out,
                                bp_error *error)
 {
 	const struct lattice_dims d = inverse->dims;
-	const size_t rows = (size_t)d.theta_h * d.theta_d, plane_bytes = rows * SPECTRUM_BLOCK * sizeof(float);
+	const size_t rows = (size_t)d.theta_h * d.theta_d, lanes_bytes = SPAN_ROWS * (d.phi_d + 4 * STEP) * sizeof(float);
 	struct spectrum_rows *t = calloc(1, sizeof *t);
 
 	if (!t)
@@ -44,12 +53,15 @@ bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t 
 	t->high = half ? d.theta_h / 2 : d.theta_h;
 	t->wide = half ? d.theta_d / 2 : d.theta_d;
 	t->span = malloc(rows * sizeof *t->span);
-	t->plane = memory_alloc(plane_bytes);
+	t->plane = half ? memory_alloc(rows * SPECTRUM_BLOCK * sizeof(float)) : NULL;
+	t->lanes = malloc(lanes_bytes);
 	t->line = malloc(SPAN_ROWS * (size_t)d.phi_d * sizeof(float));
-	bp_status status = t->span && t->plane && t->line ? BP_OK : error_memory(error, plane_bytes);
+	bp_status status = t->span && (t->plane || !half) && t->lanes && t->line ? BP_OK : error_memory(error, lanes_bytes);
 	if (!status) {
 		spans_find(d, t->span);
-		status = span_cosines_create(d, t->span, harmonics, true, &t->cosines, error);
+		for (uint32_t r = 0; r < t->high * t->wide && half; r++) /* never before where it is read */
+			t->span[r] = t->span[row_of_half(t, r)];
+		status = span_cosines_create(d.phi_d, t->span, (size_t)t->high * t->wide, harmonics, true, &t->cosines, error);
 	}
 	if (status)
 		spectrum_rows_free(t);
@@ -67,35 +79,40 @@ void spectrum_rows_free(struct spectrum_rows *t)
 	span_cosines_free(t->cosines);
 	free(t->span);
 	free(t->plane);
+	free(t->lanes);
 	free(t->line);
 	free(t);
 }
 
-/* SPECTRUM_BLOCK harmonics, every second one from `first` on, to the lanes out[row][..], `width` apart. */
-static void harmonics_invert(struct spectrum_rows *t, const struct spectrum_term *terms, const uint32_t *start, uint32_t first,
-                             float *out, size_t width)
+/* The lanes first..first + SPECTRUM_BLOCK - 1 of the rows that are wanted, to out[row][SPECTRUM_BLOCK]. */
+static void plane_invert(const struct spectrum_rows *t, const struct spectrum_term *terms, const uint32_t *start,
+                         const struct lanes *lanes, uint32_t first, float *out)
 {
 	const struct lattice_dims d = t->dims;
-	const size_t every = t->half ? 2 : 1;
+	float *plane = t->half ? t->plane : out;
 
-	memset(t->plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *t->plane);
-	for (uint32_t q = 0, m = first; q < SPECTRUM_BLOCK && m < d.phi_d; q++, m += 2)
+	memset(plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *plane);
+	for (uint32_t q = 0; q < SPECTRUM_BLOCK; q++) {
+		const uint32_t lane = first + q, m = lane < lanes->even ? 2 * lane : 2 * (lane - lanes->even) + 1;
+		if (m >= d.phi_d)
+			continue;
 		for (uint32_t i = start[m]; i < start[m + 1]; i++)
-			t->plane[(size_t)terms[i].place * SPECTRUM_BLOCK + q] = terms[i].value;
-	spectral_kernels_get()->cdf97_plane(t->plane, d.theta_h, d.theta_d, t->inverse->levels, t->half);
-	for (size_t i = 0; i < t->high; i++)
-		for (size_t j = 0; j < t->wide; j++, out += width)
-			memcpy(out, t->plane + (i * d.theta_d + j) * every * SPECTRUM_BLOCK, SPECTRUM_BLOCK * sizeof *out);
+			plane[(size_t)terms[i].place * SPECTRUM_BLOCK + q] = terms[i].value;
+	}
+	spectral_kernels_get()->cdf97_plane(plane, d.theta_h, d.theta_d, t->inverse->levels, t->half);
+	for (uint32_t r = 0; r < t->high * t->wide && t->half; r++)
+		memcpy(out + (size_t)r * SPECTRUM_BLOCK, plane + (size_t)row_of_half(t, r) * SPECTRUM_BLOCK,
+		       SPECTRUM_BLOCK * sizeof *plane);
 }
 
-/* Lanes up to the last harmonic of a parity with a term, in whole blocks. */
+/* Lanes up to the last harmonic of a parity with a term. */
 static uint32_t lanes_needed(const uint32_t *start, uint32_t harmonics, uint32_t parity)
 {
 	uint32_t count = 0;
 	for (uint32_t m = parity; m < harmonics; m += 2)
 		if (start[m + 1] > start[m])
 			count = m / 2 + 1;
-	return (count + SPECTRUM_BLOCK - 1) / SPECTRUM_BLOCK * SPECTRUM_BLOCK;
+	return (count + STEP - 1) / STEP * STEP;
 }
 
 bp_status spectrum_rows_field(struct spectrum_rows *t, int field, const struct spectrum_term *terms, const uint32_t *start,
@@ -106,21 +123,19 @@ bp_status spectrum_rows_field(struct spectrum_rows *t, int field, const struct s
 	free(lanes->value);
 	lanes->even = lanes_needed(start, t->dims.phi_d, 0);
 	lanes->odd = lanes_needed(start, t->dims.phi_d, 1);
-	const size_t width = lanes->even + lanes->odd, bytes = width * t->high * t->wide * sizeof(float);
+	lanes->planes = (lanes->even + lanes->odd + SPECTRUM_BLOCK - 1) / SPECTRUM_BLOCK;
+	const size_t plane = (size_t)t->high * t->wide * SPECTRUM_BLOCK, bytes = lanes->planes * plane * sizeof(float);
 	lanes->value = memory_alloc(bytes ? bytes : 1);
 	if (!lanes->value)
 		return error_memory(error, bytes);
-	for (uint32_t q = 0; q < lanes->even; q += SPECTRUM_BLOCK)
-		harmonics_invert(t, terms, start, 2 * q, lanes->value + q, width);
-	for (uint32_t q = 0; q < lanes->odd; q += SPECTRUM_BLOCK)
-		harmonics_invert(t, terms, start, 2 * q + 1, lanes->value + lanes->even + q, width);
+	for (uint32_t n = 0; n < lanes->planes; n++)
+		plane_invert(t, terms, start, lanes, n * SPECTRUM_BLOCK, lanes->value + n * plane);
 	return BP_OK;
 }
 
 /* Of `count` lanes of some rows, those up to the last that is not 0 in all of them, in steps of a few. */
 static uint32_t lanes_used(const float *in, size_t stride, uint32_t rows, uint32_t count)
 {
-	enum { STEP = 8 };
 	for (; count > 0; count -= STEP) {
 		uint32_t any = 0, bits[STEP];
 		for (uint32_t r = 0; r < rows; r++) {
@@ -134,40 +149,41 @@ static uint32_t lanes_used(const float *in, size_t stride, uint32_t rows, uint32
 	return count;
 }
 
-/* How many of `count` rows from the first one on have the same span; that one's in *span. */
-static uint32_t run_of_span(const struct spectrum_rows *t, uint32_t first, uint32_t count, uint32_t *span)
-{
-	const uint32_t every = t->half ? 2 : 1;
-	uint32_t run = 0;
-
-	for (uint32_t i = first / t->wide, j = first % t->wide; run < count; run++) {
-		const uint32_t here = t->span[(i * t->dims.theta_d + j) * every];
-		if (run && here != *span)
-			break;
-		*span = here;
-		if (++j == t->wide) {
-			j = 0;
-			i++;
-		}
-	}
-	return run;
-}
-
 void spectrum_rows_cells(struct spectrum_rows *t, int field, uint32_t first, uint32_t count, float *out, size_t stride)
 {
 	const struct lanes *lanes = &t->field[field];
 	const uint32_t p = t->dims.phi_d;
-	const size_t width = lanes->even + lanes->odd, apart = t->half ? p : stride;
+	const uint16_t *span = t->span + first;
+	const size_t width = (size_t)lanes->planes * SPECTRUM_BLOCK, plane = (size_t)t->high * t->wide * SPECTRUM_BLOCK;
+	const size_t apart = t->half ? p : stride;
 	float *cells = t->half ? t->line : out;
 
-	for (uint32_t r = 0, run, span = 0; r < count; r += run) {
-		run = run_of_span(t, first + r, count - r, &span);
-		const float *even = lanes->value + (first + r) * width, *odd = even + lanes->even;
+	for (uint32_t n = 0; n < lanes->planes; n++) {
+		const float *from = lanes->value + n * plane + (size_t)first * SPECTRUM_BLOCK;
+		for (uint32_t r = 0; r < count; r++, from += SPECTRUM_BLOCK) {
+			__builtin_prefetch(from + (size_t)SPAN_ROWS * SPECTRUM_BLOCK); /* so many planes at once no processor foresees */
+			memcpy(t->lanes + r * width + n * SPECTRUM_BLOCK, from, SPECTRUM_BLOCK * sizeof *from);
+		}
+	}
+	for (uint32_t r = 0, run; r < count; r += run) {
+		for (run = 1; r + run < count && span[r + run] == span[r];)
+			run++;
+		const float *even = t->lanes + r * width, *odd = even + lanes->even;
 		const struct span_lanes in = {even, odd, width, lanes_used(even, width, run, lanes->even),
 		                              lanes_used(odd, width, run, lanes->odd)};
-		span_inverse(t->cosines, span, &in, run, cells + r * apart, apart);
+		span_inverse(t->cosines, span[r], &in, run, cells + r * apart, apart);
 	}
 	for (uint32_t r = 0; r < count && t->half; r++)
 		for (uint32_t k = 0; k < p / 2; k++)
 			out[r * stride + k] = cells[r * apart + 2 * k];
+}
+
+void spectrum_rows_seen(const struct spectrum_rows *t, uint32_t r, uint32_t *first, uint32_t *count)
+{
+	const uint32_t every = t->half ? 2 : 1, span = t->span[r], begin = (t->dims.phi_d - span) / 2;
+	/* The last cell of the span, or the one behind it where that one is not wanted. */
+	const uint32_t last = (begin + span - 1 + every - 1) / every, most = t->dims.phi_d / every - 1;
+
+	*first = begin / every;
+	*count = (last < most ? last : most) - *first + 1;
 }

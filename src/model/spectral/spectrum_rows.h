@@ -25,4 +25,7 @@ bp_status spectrum_rows_field(struct spectrum_rows *rows, int field, const struc
 /* The cells of the rows first..first + count - 1 of those that are wanted, at most SPECTRUM_BLOCK of them, `stride` apart. */
 void spectrum_rows_cells(struct spectrum_rows *rows, int field, uint32_t first, uint32_t count, float *out, size_t stride);
 
+/* Row r of those that are wanted: its cells *first..*first + *count - 1 hold all there is; those on either side repeat the one beside them. */
+void spectrum_rows_seen(const struct spectrum_rows *rows, uint32_t r, uint32_t *first, uint32_t *count);
+
 #endif

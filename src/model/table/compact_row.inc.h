@@ -59,6 +59,11 @@ static void KERNEL(compact_fit)(const struct compact_hats *hats, const float *co
 	float low[2], high[2];
 	for (int c = 0; c < 2; c++)
 		KERNEL(compact_range)(share[c], hats->width + 1, &low[c], &high[c]);
+	if (high[0] == low[0] && high[1] == low[1]) { /* as everywhere below the horizon; what follows would end in the same */
+		for (int c = 0; c < 2; c++)
+			codes[c][0] = codes[c][1] = codes[c][2] = low[c];
+		return;
+	}
 	if (high[0] - low[0] > STEEP || high[1] - low[1] > STEEP) {
 		KERNEL(compact_fit_weighted)(hats, share, mean, dark, codes);
 	} else {
