@@ -9,8 +9,8 @@ typedef float KERNEL(floats8_unaligned) __attribute__((vector_size(32), aligned(
 #define FLOATS8_OF(p) ((KERNEL(floats8))(*(const KERNEL(floats8_unaligned) *)(p)))
 
 /*
- * `rows` rows, at most 4, times 8 * vectors columns, at most 64, 8 accumulators in all, which stay in registers: both are constants where
- * this is inlined. The sum over k runs in ascending order.
+ * `rows` rows times 8 * vectors columns, both constants where this is inlined, and their product at most 8: the sums stay in registers.
+ * The sum over k runs in ascending order.
  */
 static inline __attribute__((always_inline)) void KERNEL(product_part)(const float *x, size_t in_stride, size_t rows,
                                                                        size_t count, const float *matrix, size_t columns,
