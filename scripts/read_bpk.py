@@ -657,17 +657,17 @@ def inverse_lift(x):
     return z
 
 
-SPECTRAL_KINDS = {(16, 0, 3), (16, 0, 4), (17, 1, 2)}
+SPECTRAL_KINDS = {(16, 0, 3), (16, 0, 4), (16, 0, 5), (17, 1, 2)}
 
 
-def spans(h, d, p):
-    """span[i][j]: how many cells of a row of phi_d are coded where rows are cut at the horizon."""
+def spans(h, d, p, limit):
+    """span[i][j]: how many cells of a row of phi_d are coded where rows are cut."""
     borders = [math.cos(math.pi * k / p) for k in range(p + 1)]
     least = [0.0 if 2 * k <= p <= 2 * (k + 1) else min(abs(borders[k]), abs(borders[k + 1])) for k in range(p)]
 
     def span(theta_h, theta_d):
         a, b = math.cos(theta_h) * math.cos(theta_d), math.sin(theta_h) * math.sin(theta_d)
-        return sum(a - b * c > 2.0 ** -30 for c in least) or 2 - p % 2
+        return sum(a - b * c > limit for c in least) or 2 - p % 2
 
     return [[span((i / h) ** 2 * math.pi / 2, j / d * math.pi / 2) for j in range(d)] for i in range(h)]
 
@@ -681,21 +681,41 @@ def cosine_basis(n, p):
     return [[value(m, min(max(k - first, 0), n - 1)) for k in range(p)] for m in range(n)]
 
 
-def weight_factors(hs, ds, weights):
+def coded_weights(data, record):
+    """18 x 18 weights in half octaves, each coded as its difference from what its neighbours make likely."""
+    coder, gamma, weights = RangeDecoder(data), Gamma(), []
+    for n in range(324):
+        left, up, corner = (weights[n - s] if n >= s else 0 for s in (1, 18, 19))
+        if n < 18 or n % 18 == 0:
+            likely = left if n < 18 else up
+        else:
+            low, high = min(left, up), max(left, up)
+            likely = low if corner >= high else high if corner <= low else left + up - corner
+        off = gamma.decode(coder)
+        weights.append(likely + (-(off // 2) - 1 if off % 2 else off // 2))
+        demand(0 <= weights[n] <= 63, "corrupt", record.base, "a weight")
+    demand(coder.at == len(data), "corrupt", record.base, "the weights' end")
+    return weights
+
+
+def weight_factors(hs, ds, weights, graded):
     """factor[row][column] of a spectrum's coefficients: they are coded divided by these."""
-    steps = len(hs) - 1
+    steps, edge, octave = len(hs) - 1, 18 if graded else 10, 2 if graded else 16
 
     def place(extents, i, level):
         cell = i if level == steps else 2 * i if i < extents[level + 1] else 2 * (i - extents[level + 1]) + 1
-        return min(max((cell + 0.5) / extents[level] * 10 - 0.5, 0.0), 9.0)
+        return min(max((cell + 0.5) / extents[level] * edge - 0.5, 0.0), edge - 1.0)
 
     def factor(i, j):
         level = next((l for l in range(steps) if i >= hs[l + 1] or j >= ds[l + 1]), steps)
         y, x = place(hs, i, level), place(ds, j, level)
-        row, column = min(int(y), 8), min(int(x), 8)
-        w = [weights[10 * (row + a) + column + b] for a in (0, 1) for b in (0, 1)]
+        row, column = min(int(y), edge - 2), min(int(x), edge - 2)
+        w = [weights[edge * (row + a) + column + b] for a in (0, 1) for b in (0, 1)]
         above, below = (w[n] + (x - column) * (w[n + 1] - w[n]) for n in (0, 2))
-        return 2.0 ** ((above + (y - row) * (below - above)) / 16)
+        octaves = (above + (y - row) * (below - above)) / octave
+        if graded and level < min(steps, 3):
+            octaves += (9, 3, 1)[level] / 16 * ((i >= hs[level + 1]) + (j >= ds[level + 1]))
+        return 2.0 ** octaves
 
     return [[factor(i, j) for j in range(ds[0])] for i in range(hs[0])]
 
@@ -703,16 +723,19 @@ def weight_factors(hs, ds, weights):
 def decode_spectral(record, layers):
     h, d, p = record.dims
     wanted = record.load_list(layers, SPECTRAL_KINDS)
-    cut = bool(wanted) and wanted[0][0][2] == 4
+    cut = bool(wanted) and wanted[0][0][2] >= 4
+    graded = cut and wanted[0][0][2] == 5
     demand([(s[0], s[3]) for s, _ in wanted] == [(16, 0)] + [(17, l) for l in range(layers)], "corrupt", record.base, "sections of fields and planes")
     data = wanted[0][1]
-    demand(len(data) == 176, "corrupt", record.base, "the fields' bytes")
+    demand(len(data) >= 80 if graded else len(data) == 176, "corrupt", record.base, "the fields' bytes")
     unit, *rotation, step, c0, c1, c2, count = struct.unpack_from("<d12fffffI", data)
-    weights = data[76:]
     base, rotation = rotation[:3], rotation[3:]
     demand(2.0 ** -1022 <= unit <= 2.0 ** 999 and all(abs(x) <= 64 for x in base) and
            all(abs(r) <= 1.001 for r in rotation) and
            0 < step <= 2.0 ** 40 and all(abs(c) <= 1 for c in (c0, c1, c2)) and count <= 24, "corrupt", record.base, "fields")
+    limit, = struct.unpack_from("<f", data, 76) if graded else (2.0 ** -30,)
+    demand(2.0 ** -30 <= limit < 1, "corrupt", record.base, "the rows' limit")
+    weights = coded_weights(data[80:], record) if graded else data[76:]
     planes, end = Planes(record.dims, count), 0
     for _, data in wanted[1:]:
         demand(len(data) >= 4, "corrupt", record.base, "planes")
@@ -724,7 +747,8 @@ def decode_spectral(record, layers):
             demand(coder.at <= len(data) - 4, "corrupt", record.base, "planes are short")
         demand(coder.at == len(data) - 4, "corrupt", record.base, "planes are long")
 
-    factor = weight_factors(planes.hs, planes.ds, weights)
+    factor = weight_factors(planes.hs, planes.ds, weights, graded)
+    harmonic = [math.sqrt(3 / (2 + math.cos(math.pi * m / p))) if graded else 1.0 for m in range(p)]
     fields = []
     for f in range(3):
         spectra = [[[0.0] * d for _ in range(h)] for _ in range(p)]
@@ -737,7 +761,7 @@ def decode_spectral(record, layers):
                 negative = planes.sign[g, m, b, y, x] == 2
                 value = (a + (c2 * 2 ** r if r else c0 if a == 1 else c1)) * step
                 y, x = planes.bands[b].y0 + y, planes.bands[b].x0 + x
-                value *= factor[y][x]
+                value *= factor[y][x] * harmonic[m]
                 spectra[m][y][x] = -value if negative else value
         for plane in spectra:
             if not any(map(any, plane)):
@@ -750,7 +774,7 @@ def decode_spectral(record, layers):
                 for y in range(rows):
                     plane[y][:columns] = inverse_lift(plane[y][:columns])
         fields.append(spectra)
-    span = spans(h, d, p) if cut else [[p] * d] * h
+    span = spans(h, d, p, limit) if cut else [[p] * d] * h
     bases = {n: cosine_basis(n, p) for n in {n for row in span for n in row}}
     rgb, most = [[], [], []], min(40.0, 1011.0 - math.frexp(unit)[1])
     for i in range(h):

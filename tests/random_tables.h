@@ -31,7 +31,7 @@ __attribute__((unused)) static struct spectrum_term *terms_of(const struct spect
 		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
 			const float value = spectrum[(size_t)r * d.phi_d + spectrum_lane(d.phi_d, m)];
 			if (value != 0)
-				terms[n++] = spectrum_term_make(inverse, r, value);
+				terms[n++] = spectrum_term_make(inverse, r, m, value);
 		}
 	}
 	start[d.phi_d] = n;

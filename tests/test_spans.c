@@ -17,7 +17,7 @@
 static uint16_t *spans_of(struct lattice_dims d)
 {
 	uint16_t *span = malloc((size_t)d.theta_h * d.theta_d * sizeof *span);
-	spans_find(d, span);
+	spans_find(d, SPAN_MARGIN, span);
 	return span;
 }
 
@@ -38,7 +38,7 @@ static void a_span_counts_the_cells_that_can_be_seen(void **unused)
 			for (uint32_t k = 0; k < d.phi_d; k++) {
 				const double from = M_PI * k / d.phi_d, to = M_PI * (k + 1) / d.phi_d;
 				const double least = from <= M_PI_2 + 1e-9 && to >= M_PI_2 - 1e-9 ? 0 : fmin(fabs(cos(from)), fabs(cos(to)));
-				const bool here = cos(h) * cos(t) - sin(h) * sin(t) * least > SPAN_MARGIN;
+				const bool here = cos(h) * cos(t) - sin(h) * sin(t) * least > (double)SPAN_MARGIN;
 				const uint32_t first = (d.phi_d - span[r]) / 2;
 				count += here;
 				/* what can be seen lies in the middle, and is what lattice.h means by it, but for cells that touch the horizon */
@@ -50,6 +50,43 @@ static void a_span_counts_the_cells_that_can_be_seen(void **unused)
 		free(seen);
 		free(span);
 	}
+}
+
+/* What an instrument sees up to 85 degrees: no measured cell is left out, and no cell beyond the first row of cells that are not. */
+static void a_limit_leaves_what_was_measured(void **unused)
+{
+	const struct lattice_dims d = {90, 90, 180};
+	struct lattice lattice;
+	size_t left = 0, beyond = 0;
+	(void)unused;
+	assert_int_equal(lattice_alloc(d, &lattice, NULL), BP_OK);
+	for (uint32_t i = 0; i < d.theta_h; i++)
+		for (uint32_t j = 0; j < d.theta_d; j++)
+			for (uint32_t k = 0; k < d.phi_d; k++) {
+				const double h = (i + 0.5) / 90 * ((i + 0.5) / 90) * M_PI_2, t = (j + 0.5) / 90 * M_PI_2;
+				lattice.valid[lattice_index(d, i, j, k)] =
+					cos(h) * cos(t) - sin(h) * sin(t) * fabs(cos(M_PI * (k + 0.5) / 180)) > cos(85 / 180.0 * M_PI);
+			}
+	const float limit = spans_limit(&lattice);
+	uint16_t *span = malloc(90 * 90 * sizeof *span), *higher = malloc(90 * 90 * sizeof *higher);
+	assert_true(limit > 0.09f && limit < 0.1f);
+	spans_find(d, limit, span);
+	spans_find(d, limit * (1 + 0x1p-12f), higher);
+	for (size_t n = 0; n < lattice_cells(d); n++) {
+		const uint32_t k = (uint32_t)(n % d.phi_d), first = (d.phi_d - span[n / d.phi_d]) / 2,
+					   first_higher = (d.phi_d - higher[n / d.phi_d]) / 2;
+		const bool in = k >= first && k < d.phi_d - first;
+		assert_true(in || !lattice.valid[n]);
+		beyond += in && !lattice.valid[n];
+		left += lattice.valid[n] && (k < first_higher || k >= d.phi_d - first_higher);
+	}
+	assert_true(left > 0); /* it is the highest */
+	assert_true(beyond < lattice_cells(d) / 100);
+	memset(lattice.valid, 1, lattice_cells(d));
+	assert_true(spans_limit(&lattice) == SPAN_MARGIN);
+	free(span);
+	free(higher);
+	lattice_free(&lattice);
 }
 
 static void span_forward_is_the_sum_written_out(void **unused)
@@ -90,7 +127,7 @@ static float *inverse_of(struct lattice_dims d, const float *spectrum, bool half
 	struct spectrum_rows *t = NULL;
 	uint32_t start[64];
 	assert_int_equal(spectrum_inverse_create(d, &inverse, NULL), BP_OK);
-	assert_int_equal(spectrum_rows_create(inverse, d.phi_d, half, &t, NULL), BP_OK);
+	assert_int_equal(spectrum_rows_create(inverse, SPAN_MARGIN, d.phi_d, half, &t, NULL), BP_OK);
 	struct spectrum_term *terms = terms_of(inverse, spectrum, start);
 	assert_int_equal(spectrum_rows_field(t, 0, terms, start, NULL), BP_OK);
 	for (uint32_t r = 0; r < rows; r += SPECTRUM_BLOCK) {
@@ -124,7 +161,7 @@ static void what_can_be_seen_comes_back_and_what_lies_beyond_is_the_value_beside
 		struct spectrum *forward = NULL;
 		for (size_t i = 0; i < cells; i++)
 			spectrum[i] = table[i] = (float)(uniform() - 0.5);
-		assert_int_equal(spectrum_create(d, true, &forward, NULL), BP_OK);
+		assert_int_equal(spectrum_create(d, SPAN_MARGIN, &forward, NULL), BP_OK);
 		const uint16_t *span = spectrum_spans(forward);
 		spectrum_forward(forward, spectrum, 0);
 		float *back = inverse_of(d, spectrum, false);
@@ -165,6 +202,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_span_counts_the_cells_that_can_be_seen),
+		cmocka_unit_test(a_limit_leaves_what_was_measured),
 		cmocka_unit_test(span_forward_is_the_sum_written_out),
 		cmocka_unit_test(what_can_be_seen_comes_back_and_what_lies_beyond_is_the_value_beside_it),
 		cmocka_unit_test(half_a_table_is_every_second_cell_of_the_whole),

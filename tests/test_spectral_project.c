@@ -29,7 +29,7 @@ static int by_size(const void *a, const void *b)
 	return x < y ? 1 : x > y ? -1 : 0;
 }
 
-static const uint8_t EVEN[SPECTRAL_WEIGHTS]; /* all 0 */
+static const struct spectral_weights EVEN; /* all 0 */
 
 /* Checks that valid cells are what they were; the root of the energy in all but the `kept` largest coefficients. Uses up the table. */
 static double rest_of(struct spectrum *spectrum, float *const table[3], const uint8_t *valid, const float base[3], size_t kept)
@@ -57,7 +57,7 @@ static void what_a_record_cannot_hold_becomes_less_and_valid_cells_stay(void **u
 	double rest[4];
 	(void)unused;
 
-	assert_int_equal(spectrum_create(DIMS, true, &spectrum, NULL), BP_OK);
+	assert_int_equal(spectrum_create(DIMS, SPAN_MARGIN, &spectrum, NULL), BP_OK);
 	for (int steps = 0; steps < 4; steps++) {
 		for (size_t i = 0; i < cells; i++)
 			valid[i] = i / DIMS.phi_d % DIMS.theta_d < 24 && i % 7 != 3;
@@ -65,7 +65,7 @@ static void what_a_record_cannot_hold_becomes_less_and_valid_cells_stay(void **u
 			for (size_t i = 0; i < cells; i++)
 				table[c][i] = truth_at(c, i);
 		assert_int_equal(spectral_fill(DIMS, valid, table, NULL, NULL, NULL), BP_OK);
-		assert_int_equal(spectral_project(spectrum, DIMS, valid, base, EVEN, 1500, steps, table, NULL), BP_OK);
+		assert_int_equal(spectral_project(spectrum, DIMS, valid, base, &EVEN, SPAN_MARGIN, 1500, steps, table, NULL), BP_OK);
 		rest[steps] = rest_of(spectrum, table, valid, base, 600);
 	}
 	assert_true(rest[1] < 0.9 * rest[0]);
@@ -122,12 +122,12 @@ static void a_table_without_a_hole_is_left_alone(void **unused)
 	struct spectrum *spectrum = NULL;
 	(void)unused;
 
-	assert_int_equal(spectrum_create(DIMS, true, &spectrum, NULL), BP_OK);
+	assert_int_equal(spectrum_create(DIMS, SPAN_MARGIN, &spectrum, NULL), BP_OK);
 	memset(valid, 1, cells);
 	for (int c = 0; c < 3; c++)
 		for (size_t i = 0; i < cells; i++)
 			table[c][i] = truth_at(c, i);
-	assert_int_equal(spectral_project(spectrum, DIMS, valid, base, EVEN, 60400, 2, table, NULL), BP_OK);
+	assert_int_equal(spectral_project(spectrum, DIMS, valid, base, &EVEN, SPAN_MARGIN, 60400, 2, table, NULL), BP_OK);
 	for (int c = 0; c < 3; c++)
 		for (size_t i = 0; i < cells; i++)
 			assert_true(table[c][i] == truth_at(c, i));

@@ -84,7 +84,7 @@ static void the_forward_transform_is_the_sum_written_out(void **unused)
 		double *slow = malloc(lattice_cells(DIMS[n]) * sizeof *slow);
 		struct spectrum *spectrum = NULL;
 		slow_forward(DIMS[n], table, slow);
-		assert_int_equal(spectrum_create(DIMS[n], false, &spectrum, NULL), BP_OK);
+		assert_int_equal(spectrum_create(DIMS[n], 0, &spectrum, NULL), BP_OK);
 		spectrum_forward(spectrum, table, 0);
 		for (size_t i = 0; i < lattice_cells(DIMS[n]); i++)
 			assert_true(fabs((double)table[i] - slow[i]) < 1e-5);

@@ -111,7 +111,7 @@ static void the_inverse_gives_the_table_back(void **unused)
 		struct spectrum *forward = NULL;
 		for (size_t i = 0; i < cells; i++)
 			spectrum[i] = table[i] = (float)(uniform() - 0.5);
-		assert_int_equal(spectrum_create(DIMS[n], false, &forward, NULL), BP_OK);
+		assert_int_equal(spectrum_create(DIMS[n], 0, &forward, NULL), BP_OK);
 		spectrum_forward(forward, spectrum, 0);
 		float *back = inverse_of(DIMS[n], spectrum);
 		for (size_t i = 0; i < cells; i++)

@@ -70,8 +70,62 @@ FIXTURE void vector_spectral(const char *path, struct lattice_dims dims, double 
 }
 
 static void make_spectral(const char *path) { vector_spectral(path, (struct lattice_dims){16, 15, 6}, 1, 1500); }
-/* Enough cells along theta_h and theta_d for weights. */
-static void make_spectral_weights(const char *path) { vector_spectral(path, (struct lattice_dims){21, 20, 4}, 1, 2000); }
+/* Enough cells along theta_h and theta_d for weights; what the caller does to their section comes under a checksum that holds. */
+FIXTURE void vector_weights_begin(struct record_head *head, struct section_list *sections)
+{
+	vector_spectral_encode("material", (struct lattice_dims){21, 20, 4}, 1, 2000, 0, head, sections);
+	assert_int_equal(sections->entry[0].version, 5);
+}
+
+static void make_spectral_weights(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_weights_begin(&head, &sections);
+	vector_spectral_write(path, &head, &sections);
+}
+
+enum { VECTOR_LIMIT_AT = 76, VECTOR_WEIGHTS_AT = 80 };
+
+/* As codec version 5 wrote it: 100 weights as they are, and no factors by frequency. */
+static void make_spectral_plain(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_weights_begin(&head, &sections);
+	sections.entry[0].version = 4;
+	sections.bytes[0].count = VECTOR_LIMIT_AT;
+	for (uint32_t n = 0; n < 100; n++)
+		write_u8(&sections.bytes[0], (uint8_t)(n * 3 % 64));
+	vector_spectral_write(path, &head, &sections);
+}
+
+static void make_spectral_limit(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_weights_begin(&head, &sections);
+	store_u32(sections.bytes[0].bytes + VECTOR_LIMIT_AT, 0x3f800000); /* 1 */
+	vector_spectral_write(path, &head, &sections);
+}
+
+static void make_spectral_weight(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_weights_begin(&head, &sections);
+	memset(sections.bytes[0].bytes + VECTOR_WEIGHTS_AT, 0xff, sections.bytes[0].count - VECTOR_WEIGHTS_AT);
+	vector_spectral_write(path, &head, &sections);
+}
+
+static void make_spectral_weights_long(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_weights_begin(&head, &sections);
+	write_u8(&sections.bytes[0], 0);
+	vector_spectral_write(path, &head, &sections);
+}
 static void make_spectral_least(const char *path) { vector_spectral(path, (struct lattice_dims){4, 4, 4}, 1, 60400); }
 static void make_spectral_bright(const char *path) { vector_spectral(path, (struct lattice_dims){4, 5, 6}, 1e300, 60400); }
 static void make_spectral_dark(const char *path) { vector_spectral(path, (struct lattice_dims){4, 5, 6}, 1e-300, 60400); }

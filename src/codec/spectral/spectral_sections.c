@@ -8,20 +8,23 @@
 
 #include "error.h"
 #include "encoding.h"
+#include "weights_code.h"
 #include "codec/profile_codec.h"
 
 enum {
 	CODEC_FIELDS = 0,
 	CODEC_PLANES = 1,
-	FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 + SPECTRAL_WEIGHTS,
-	FIELDS_VERSION = 3,     /* rows of phi_d are whole */
-	FIELDS_VERSION_CUT = 4, /* they are cut at the horizon: spans.h */
+	FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, /* before limit and weights */
+	FIELDS_VERSION = 3,                               /* rows of phi_d are whole */
+	FIELDS_VERSION_CUT = 4,                           /* they are cut at the horizon: spans.h */
+	FIELDS_VERSION_GRADED = 5,                        /* cut there or before, and steps go by frequency too: spectral_weights.h */
 	PLANES_VERSION = 2
 };
 
 static const struct section_kind KINDS[] = {
 	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION},
 	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_CUT},
+	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_GRADED},
 	{SECTION_PLANES, CODEC_PLANES, PLANES_VERSION},
 };
 
@@ -31,10 +34,12 @@ enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
 /* ---- encoding ---- */
 
-static void fields_write(const struct encoding *e, struct section_list *sections)
+static void fields_write(const struct encoding *e, const struct byte_buffer *weights, struct section_list *sections)
 {
-	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS,
-	                                      e->model->cut ? FIELDS_VERSION_CUT : FIELDS_VERSION, 0, SECTION_REQUIRED, NAN);
+	const uint16_t version = e->model->weights.graded ? FIELDS_VERSION_GRADED
+	                         : e->model->limit > 0    ? FIELDS_VERSION_CUT
+	                                                  : FIELDS_VERSION;
+	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS, version, 0, SECTION_REQUIRED, NAN);
 	write_f64(out, e->model->unit);
 	for (int c = 0; c < 3; c++)
 		write_f32(out, e->model->base[c]);
@@ -46,7 +51,9 @@ static void fields_write(const struct encoding *e, struct section_list *sections
 	write_f32(out, e->centre[1]);
 	write_f32(out, SPECTRAL_CENTRE_BELOW);
 	write_u32(out, e->planes->planes);
-	write_bytes(out, e->model->weights, SPECTRAL_WEIGHTS);
+	if (version == FIELDS_VERSION_GRADED)
+		write_f32(out, e->model->limit);
+	write_bytes(out, weights->bytes, weights->count);
 }
 
 /* What decoding the sections would give. */
@@ -65,10 +72,10 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	copy->spectral = decoded;
 	decoded->dims = e->model->dims;
 	decoded->unit = e->model->unit;
-	decoded->cut = e->model->cut;
+	decoded->limit = e->model->limit;
 	memcpy(decoded->base, e->model->base, sizeof decoded->base);
 	memcpy(decoded->rotation, e->model->rotation, sizeof decoded->rotation);
-	memcpy(decoded->weights, e->model->weights, sizeof decoded->weights);
+	decoded->weights = e->model->weights;
 	decoded->step = e->step;
 	decoded->centre[0] = e->centre[0];
 	decoded->centre[1] = e->centre[1];
@@ -84,6 +91,7 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 {
 	struct encoding e = {.model = model->spectral, .watch = request->options->watch};
 	const uint32_t budget = request->record_bytes_max;
+	struct byte_buffer weights = {0};
 	uint64_t least;
 	bp_status status;
 
@@ -93,21 +101,25 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 	for (int i = 0; i < PREVIEW_COUNT && PREVIEWS[i] + PREVIEWS[i] / 4 < budget; i++)
 		e.limit[e.layers++] = PREVIEWS[i];
 	e.limit[e.layers++] = budget;
-	e.head_bytes = record_head_size(request->name_bytes, e.layers, e.layers + 1) + FIELDS_BYTES;
+	weights_encode(&e.model->weights, &weights);
+	e.head_bytes = record_head_size(request->name_bytes, e.layers, e.layers + 1) + FIELDS_BYTES + weights.count +
+	               (e.model->weights.graded ? 4 : 0);
 	least = e.head_bytes + e.layers * 8;
-	if (least > budget)
-		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-		                 "the budget of %u bytes is too small: this record takes at least %llu", budget,
-		                 (unsigned long long)least);
-	status = planes_create(model->dims, 1, &e.planes, error);
-	if (status)
-		return status;
-	status = encoding_make(&e, request->options->effort, error);
+	if (weights.failed)
+		status = error_memory(error, SPECTRAL_WEIGHTS);
+	else if (least > budget)
+		status =
+			error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the budget of %u bytes is too small: this record takes at least %llu",
+		              budget, (unsigned long long)least);
+	else
+		status = planes_create(model->dims, 1, &e.planes, error);
+	if (!status)
+		status = encoding_make(&e, request->options->effort, error);
 	if (!status) {
 		/* A short material may be complete before its last layers. */
 		while (e.layers > 1 && e.end[e.layers - 1] == e.end[e.layers - 2])
 			e.layers--;
-		fields_write(&e, sections);
+		fields_write(&e, &weights, sections);
 		for (uint32_t l = 0; l < e.layers; l++) {
 			struct byte_buffer *out =
 				section_add(sections, SECTION_PLANES, CODEC_PLANES, PLANES_VERSION, l, SECTION_REQUIRED, NAN);
@@ -117,6 +129,7 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 		*left_out = 0;
 		status = decoded_build(&e, model, decoded, error);
 	}
+	byte_buffer_free(&weights);
 	encoding_clear(&e);
 	planes_free(e.planes);
 	return status;
@@ -127,10 +140,11 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 static bp_status fields_read(const struct section_bytes *section, struct spectral_model *model, bp_error *error)
 {
 	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
-	if (section->entry->bytes != FIELDS_BYTES)
-		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %d", section->entry->bytes,
-		                 FIELDS_BYTES);
-	model->cut = section->entry->version == FIELDS_VERSION_CUT;
+	const uint32_t version = section->entry->version, before_weights = FIELDS_BYTES + (version == FIELDS_VERSION_GRADED ? 4 : 0);
+	if (section->entry->bytes < before_weights)
+		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %u and weights",
+		                 section->entry->bytes, FIELDS_BYTES);
+	model->weights.graded = version == FIELDS_VERSION_GRADED;
 	model->unit = read_f64(&in);
 	for (int c = 0; c < 3; c++)
 		model->base[c] = read_f32(&in);
@@ -141,7 +155,7 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 	for (int i = 0; i < 3; i++)
 		model->centre[i] = read_f32(&in);
 	model->planes = read_u32(&in);
-	read_bytes(&in, model->weights, SPECTRAL_WEIGHTS);
+	model->limit = model->weights.graded ? read_f32(&in) : version == FIELDS_VERSION_CUT ? SPAN_MARGIN : 0;
 	if (!(model->unit >= SPECTRAL_UNIT_LEAST && model->unit <= SPECTRAL_UNIT_MOST))
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the unit is %g, not from %g to %g", model->unit, SPECTRAL_UNIT_LEAST,
 		                 SPECTRAL_UNIT_MOST);
@@ -159,7 +173,10 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 			return error_set(error, BP_ERROR_CORRUPT, 60, "a centre is %g", (double)model->centre[i]);
 	if (model->planes > SPECTRAL_PLANES_MAX)
 		return error_set(error, BP_ERROR_CORRUPT, 72, "%u planes: %d at most", model->planes, SPECTRAL_PLANES_MAX);
-	return BP_OK;
+	if (model->weights.graded && !(model->limit >= SPAN_MARGIN && model->limit < 1))
+		return error_set(error, BP_ERROR_CORRUPT, 76, "rows are cut at %g, not from 2^-30 to 1", (double)model->limit);
+	const char *fault = weights_decode(section->bytes + before_weights, section->entry->bytes - before_weights, &model->weights);
+	return fault ? error_set(error, BP_ERROR_CORRUPT, before_weights, "%s", fault) : BP_OK;
 }
 
 static bp_status layer_decode(const struct section_bytes *section, struct planes *planes, uint32_t from, uint32_t *end,
@@ -220,7 +237,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 
 const struct profile_codec SPECTRAL_CODEC = {
 	.profile = PROFILE_SPECTRAL,
-	.version = 5,
+	.version = 6,
 	.kinds = KINDS,
 	.kind_count = sizeof KINDS / sizeof *KINDS,
 	.decode = spectral_decode,

@@ -21,6 +21,7 @@
 
 #include "model/fit.h"
 #include "model/robust/robust.h"
+#include "spans.h"
 #include "spectral_weights.h"
 #include "spectrum.h"
 
@@ -46,10 +47,10 @@ struct spectral_model {
 	double unit; /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
 	float base
 		[3]; /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
-	float rotation[3][3];              /* orthonormal */
-	uint8_t weights[SPECTRAL_WEIGHTS]; /* spectral_weights.h */
+	float rotation[3][3]; /* orthonormal */
+	struct spectral_weights weights;
 	float *coefficient[3]; /* fitted: spectra of the three fields, divided by the weights' factors; NULL when decoded */
-	bool cut;              /* rows of phi_d are cut at the horizon: spans.h */
+	float limit;           /* rows of phi_d are cut there (spans.h); 0: they are whole */
 	bool noisy;            /* fitted: noise was found and drawn towards 0 */
 
 	float step; /* decoded, as all that follows */
@@ -90,11 +91,11 @@ bp_status spectral_denoise(struct lattice_dims dims, const uint16_t *span, float
 
 /*
  * spectral_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of
- * about so many bytes with such weights. The spectrum's rows are cut.
+ * about so many bytes with such weights. The spectrum's rows are cut at `limit`.
  */
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3],
-                           const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3],
-                           bp_error *error);
+                           const struct spectral_weights *weights, float limit, double budget_bytes, int steps,
+                           float *const table[3], bp_error *error);
 
 /*
  * spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. Where `ready` is set, it makes all

@@ -28,7 +28,7 @@ bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t la
 	bp_status status = planes ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * cells * sizeof *planes);
 
 	if (!status)
-		status = spectral_weights_apply(model->weights, inverse, error);
+		status = spectral_weights_apply(&model->weights, inverse, error);
 	if (!status)
 		status = spectral_terms_make(model, inverse, layers, &terms, error);
 	for (uint32_t k = 0; !status && k < d.phi_d; k += SPECTRUM_BLOCK) {
@@ -54,7 +54,7 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 {
 	if (model->coefficient[0])
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a model that was fitted has no levels; its record has");
-	if (model->cut)
+	if (model->limit > 0)
 		return spectral_expand_rows(model, layers, half, take, user, error);
 	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, take, user, error);
 }

@@ -84,7 +84,7 @@ bp_status spectral_expand_half_blocks(const struct spectral_model *model, uint32
 	bp_status status = plane && fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, plane_bytes);
 
 	if (!status)
-		status = spectral_weights_apply(model->weights, inverse, error);
+		status = spectral_weights_apply(&model->weights, inverse, error);
 	if (!status)
 		status = spectral_terms_make(model, inverse, layers, &terms, error);
 	for (size_t f = 0; !status && f < 3; f++)

@@ -30,11 +30,11 @@ bp_status spectral_expand_rows(const struct spectral_model *model, uint32_t laye
 	bp_status status = fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * piece * sizeof *fields);
 
 	if (!status)
-		status = spectral_weights_apply(model->weights, inverse, error);
+		status = spectral_weights_apply(&model->weights, inverse, error);
 	if (!status)
 		status = spectral_terms_make(model, inverse, layers, &terms, error);
 	if (!status)
-		status = spectrum_rows_create(inverse, harmonics_used(&terms, d.phi_d), half, &rows, error);
+		status = spectrum_rows_create(inverse, model->limit, harmonics_used(&terms, d.phi_d), half, &rows, error);
 	for (int f = 0; !status && f < 3; f++)
 		status = spectrum_rows_field(rows, f, terms.term, terms.start + (size_t)f * d.phi_d, error);
 	for (uint32_t r = 0; !status && r < count; r += SPECTRUM_BLOCK) {

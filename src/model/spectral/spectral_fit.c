@@ -202,8 +202,8 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 	status = watch_tell(options->watch, 0.5, error);
 	if (status)
 		return status;
-	status = spectral_project(spectrum, lattice->dims, lattice->valid, base, fitted->weights, options->budget_bytes,
-	                          PROJECTIONS[options->effort], fitted->coefficient, error);
+	status = spectral_project(spectrum, lattice->dims, lattice->valid, base, &fitted->weights, fitted->limit,
+	                          options->budget_bytes, PROJECTIONS[options->effort], fitted->coefficient, error);
 	if (status)
 		return status;
 	spectra_make(lattice->dims, spectrum, order, fitted, rotation);
@@ -214,16 +214,15 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 /* The last step: coefficients as they are quantised. */
 static bp_status weights_divide(struct spectral_model *fitted, bp_error *error)
 {
-	const size_t rows = (size_t)fitted->dims.theta_h * fitted->dims.theta_d;
-	float *factor = malloc(rows * sizeof *factor);
+	struct spectral_factors factors;
+	const bp_status status = spectral_factors_create(fitted->dims, &fitted->weights, &factors, error);
 
-	if (!factor)
-		return error_memory(error, rows * sizeof *factor);
+	if (status)
+		return status;
 	stage_enter(STAGE_CLEAN);
-	spectral_weights_factors(fitted->dims, fitted->weights, factor);
 	for (int f = 0; f < 3; f++)
-		spectral_weights_divide(fitted->dims, factor, fitted->coefficient[f]);
-	free(factor);
+		spectral_factors_divide(fitted->dims, &factors, fitted->coefficient[f]);
+	spectral_factors_free(&factors);
 	return BP_OK;
 }
 
@@ -270,12 +269,15 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		status = watch_tell(options->watch, 0.1, error);
 	if (!status && !bound) {
 		status = seen_cells(lattice, &seen, &counted, error);
-		fitted->cut = seen.valid == counted;
-		project = project && fitted->cut;
-		spectral_weights_find(&seen, fitted->unit, fitted->weights);
+		const bool cut = !status && seen.valid == counted;
+		project = project && cut;
+		if (cut) {
+			spectral_weights_find(&seen, fitted->unit, &fitted->weights);
+			fitted->limit = fitted->weights.graded ? spans_limit(&seen) : SPAN_MARGIN;
+		}
 	}
 	if (!status)
-		status = spectrum_create(d, fitted->cut, &spectrum, error);
+		status = spectrum_create(d, fitted->limit, &spectrum, error);
 	if (!status)
 		status = logs_make(&seen, order, fitted, error);
 	if (!status && project) {
@@ -296,7 +298,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		status = fields_improve(&seen, options, spectrum, order, filled, fitted, error);
 	/* Where noise is drawn towards 0, even steps do as well by what is under it (VARIANTS.md). */
 	if (fitted->noisy)
-		memset(fitted->weights, 0, sizeof fitted->weights);
+		memset(fitted->weights.weight, 0, sizeof fitted->weights.weight);
 	if (!status && !bound)
 		status = weights_divide(fitted, error);
 	free(counted);

@@ -24,7 +24,7 @@ static const double BITS_EACH = 4.3; /* of a record, for each coefficient that i
 struct projection {
 	struct lattice_dims dims;
 	struct spectrum_inverse *inverse;
-	float *factor;   /* of the weights, by row */
+	struct spectral_factors factors;
 	float *spectrum; /* of one channel, which are much alike */
 	struct spectrum_rows *rows;
 	float *cells; /* of some rows */
@@ -33,29 +33,29 @@ struct projection {
 	uint32_t room; /* terms */
 };
 
-static bp_status projection_create(struct lattice_dims d, const uint8_t weights[SPECTRAL_WEIGHTS], uint32_t room,
+static bp_status projection_create(struct lattice_dims d, const struct spectral_weights *weights, float limit, uint32_t room,
                                    struct projection *out, bp_error *error)
 {
-	const size_t cells = lattice_cells(d), rows = (size_t)d.theta_h * d.theta_d;
+	const size_t cells = lattice_cells(d);
 
 	*out = (struct projection){.dims = d, .room = room};
-	out->factor = malloc(rows * sizeof(float));
 	out->spectrum = memory_alloc(cells * sizeof(float));
 	out->cells = malloc(SPECTRUM_BLOCK * (size_t)d.phi_d * sizeof(float));
 	out->term = malloc(((size_t)room + 1) * sizeof *out->term);
 	out->start = malloc(((size_t)d.phi_d + 1) * sizeof *out->start);
-	if (!out->factor || !out->spectrum || !out->cells || !out->term || !out->start)
+	if (!out->spectrum || !out->cells || !out->term || !out->start)
 		return error_memory(error, cells * sizeof(float));
-	spectral_weights_factors(d, weights, out->factor);
-	bp_status status = spectrum_inverse_create(d, &out->inverse, error);
+	bp_status status = spectral_factors_create(d, weights, &out->factors, error);
+	if (!status)
+		status = spectrum_inverse_create(d, &out->inverse, error);
 	if (!status)
 		status = spectral_weights_apply(weights, out->inverse, error);
-	return status ? status : spectrum_rows_create(out->inverse, d.phi_d, false, &out->rows, error);
+	return status ? status : spectrum_rows_create(out->inverse, limit, d.phi_d, false, &out->rows, error);
 }
 
 static void projection_free(struct projection *p)
 {
-	free(p->factor);
+	spectral_factors_free(&p->factors);
 	free(p->spectrum);
 	free(p->cells);
 	spectrum_rows_free(p->rows);
@@ -90,7 +90,7 @@ static bp_status channel_project(const struct projection *p, const uint8_t *vali
 		p->start[m] = n;
 		for (uint32_t r = 0; r < rows && n < p->room; r++)
 			if (fabsf(lane[r * lanes]) >= threshold)
-				p->term[n++] = spectrum_term_make(p->inverse, r, lane[r * lanes]);
+				p->term[n++] = spectrum_term_make(p->inverse, r, m, lane[r * lanes]);
 	}
 	p->start[lanes] = n;
 	const bp_status status = spectrum_rows_field(p->rows, 0, p->term, p->start, error);
@@ -105,19 +105,19 @@ static bp_status channel_project(const struct projection *p, const uint8_t *vali
 }
 
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, const uint8_t *valid, const float base[3],
-                           const uint8_t weights[SPECTRAL_WEIGHTS], double budget_bytes, int steps, float *const table[3],
-                           bp_error *error)
+                           const struct spectral_weights *weights, float limit, double budget_bytes, int steps,
+                           float *const table[3], bp_error *error)
 {
 	const size_t cells = lattice_cells(d);
 	const double wanted = fmin(budget_bytes * 8 / BITS_EACH / 4, (double)cells); /* of one channel, which are much alike */
 	struct projection p;
-	bp_status status = projection_create(d, weights, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
+	bp_status status = projection_create(d, weights, limit, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
 
 	for (int c = 0; !status && c < 3; c++)
 		for (int s = 0; !status && s < steps; s++) {
 			memcpy(p.spectrum, table[c], cells * sizeof(float));
 			spectrum_forward(spectrum, p.spectrum, base[c]);
-			spectral_weights_divide(d, p.factor, p.spectrum);
+			spectral_factors_divide(d, &p.factors, p.spectrum);
 			/* Four times the last threshold at first where there are steps enough. */
 			const float last = size_of_rank(p.spectrum, cells, wanted);
 			const double factor = steps > 1 ? fast_exp2(2.0 * (steps - 1 - s) / (steps - 1)) : 1;

@@ -47,7 +47,7 @@ bp_status spectral_terms_make(const struct spectral_model *model, const struct s
 		}
 		const float value = spectral_level_value(model, level.level, lowest);
 		if (value != 0)
-			out->term[n++] = spectrum_term_make(inverse, row, value);
+			out->term[n++] = spectrum_term_make(inverse, row, harmonic, value);
 	}
 	while (unit <= 3 * p)
 		out->start[unit++] = n;

@@ -1,14 +1,17 @@
 /*
- * spectral_weights.h: how finely each part of the (theta_h, theta_d) plane is coded.
+ * spectral_weights.h: how finely each part of a spectrum is coded. A coefficient is divided by the factors of its place and frequency
+ * before it is quantised, and multiplied by them when it is decoded: the step is coarser where errors are worth less. At a given rate
+ * the sum of the worth of all errors is least where steps go as worth^(-1/2).
  *
- * An error of the logarithm is worth what it does to a picture: nothing below the horizon, little where light only grazes, in a
- * highlight far above white or where cells are few directions, much where a material is as bright as its pictures are exposed for.
- * A spectrum's coefficients lie at places of that plane, so each is divided by a factor before it is quantised, and multiplied by
- * it when it is decoded: the step is coarser where errors are worth less. At a given rate the sum of the worth of all errors is
- * least where steps go as worth^(-1/2).
+ * By place: an error of the logarithm is worth what it does to a picture: nothing below the horizon, little where light only grazes, in
+ * a highlight far above white or where cells are few directions, much where a material is as bright as its pictures are exposed
+ * for. A coefficient lies somewhere in the (theta_h, theta_d) plane; its factor is a power of 2, interpolated between weights at the
+ * centres of a grid of regions, [theta_h][theta_d], 0 where the table is coded finest. Worth is a statistic of what is
+ * measured, and does not change where the table is made s times as bright.
  *
- * The factors are 2^(w/16) with w interpolated between the centres of a grid of 10 x 10 regions, [theta_h][theta_d], 0 where the
- * table is coded finest. Worth is a statistic of what is measured, and does not change where the table is made s times as bright.
+ * By frequency (`graded`): a look-up interpolates between cells, and what is left of an error of frequency w (pi: from cell to cell) is,
+ * in the mean over places, (2 + cos w)/3 of its square along each axis. Along phi_d harmonic m has w = pi m/P; along the others the
+ * details of step l of the wavelet have w from pi/2^(l+1) to pi/2^l.
  */
 #ifndef MODEL_SPECTRAL_SPECTRAL_WEIGHTS_H
 #define MODEL_SPECTRAL_SPECTRAL_WEIGHTS_H
@@ -16,18 +19,42 @@
 #include "merl/lattice.h"
 #include "spectrum_inverse.h"
 
-enum { SPECTRAL_WEIGHTS_EDGE = 10, SPECTRAL_WEIGHTS = SPECTRAL_WEIGHTS_EDGE * SPECTRAL_WEIGHTS_EDGE };
+enum {
+	SPECTRAL_WEIGHTS_EDGE = 18,
+	SPECTRAL_WEIGHTS = SPECTRAL_WEIGHTS_EDGE * SPECTRAL_WEIGHTS_EDGE,
+	SPECTRAL_WEIGHTS_EDGE_PLAIN = 10, /* of models that are not graded */
+	SPECTRAL_WEIGHT_MOST = 63,        /* of graded ones */
+};
 
-/* spectral_weights_find.c: from the measured values, in units of `unit` (1/sr). A lattice of fewer than 20 cells along theta_h or theta_d gets zeros. */
-void spectral_weights_find(const struct lattice *lattice, double unit, uint8_t weights[SPECTRAL_WEIGHTS]);
+struct spectral_weights {
+	bool graded; /* edge 18, weights in half octaves; else edge 10, in sixteenths */
+	uint8_t weight[SPECTRAL_WEIGHTS];
+};
 
-/* factor[theta_h theta_d]: of every row of a spectrum (spectrum.h). */
-void spectral_weights_factors(struct lattice_dims dims, const uint8_t weights[SPECTRAL_WEIGHTS], float *factor);
+static inline uint32_t spectral_weights_edge(const struct spectral_weights *weights)
+{
+	return weights->graded ? SPECTRAL_WEIGHTS_EDGE : SPECTRAL_WEIGHTS_EDGE_PLAIN;
+}
+
+/*
+ * spectral_weights_find.c: from the measured values, in units of `unit` (1/sr). A lattice of fewer than 20 cells along theta_h or theta_d
+ * is not graded, and all its weights are 0.
+ */
+void spectral_weights_find(const struct lattice *lattice, double unit, struct spectral_weights *out);
+
+/* The factors of a spectrum (spectrum.h). */
+struct spectral_factors {
+	float *row;      /* [theta_h theta_d] */
+	float *harmonic; /* [phi_d] */
+};
+bp_status spectral_factors_create(struct lattice_dims dims, const struct spectral_weights *weights, struct spectral_factors *out,
+                                  bp_error *error);
+void spectral_factors_free(struct spectral_factors *factors); /* a zeroed struct is allowed */
 
 /* Takes the factors into the gains of an inverse transform. */
-bp_status spectral_weights_apply(const uint8_t weights[SPECTRAL_WEIGHTS], struct spectrum_inverse *inverse, bp_error *error);
+bp_status spectral_weights_apply(const struct spectral_weights *weights, struct spectrum_inverse *inverse, bp_error *error);
 
 /* Divides the spectrum by the factors. */
-void spectral_weights_divide(struct lattice_dims dims, const float *factor, float *spectrum);
+void spectral_factors_divide(struct lattice_dims dims, const struct spectral_factors *factors, float *spectrum);
 
 #endif

@@ -7,11 +7,11 @@
 #include "model/math/fast_math.h"
 #include "spectral_kernels.h"
 
-enum { EDGE = SPECTRAL_WEIGHTS_EDGE, LEAST_CELLS = 2 * EDGE, PER_OCTAVE = 8, BINS = 128 * PER_OCTAVE };
+enum { EDGE = SPECTRAL_WEIGHTS_EDGE, LEAST_CELLS = 20, PER_OCTAVE = 8, BINS = 128 * PER_OCTAVE };
 
 /* Figures that were found by trial: VARIANTS.md, "What errors are worth". */
 static const double PICTURE = 0.95;  /* share of the picture in an error's worth; the rest is the error of the logarithm itself */
-static const double STEEPNESS = 1.2; /* 1: least by this worth, which is smoother than a picture's; less: safer for other uses */
+static const double STEEPNESS = 1.3; /* 1: least by this worth, which is smoother than a picture's; less: safer for other uses */
 static const double LEAST = 0.02;    /* of the mean worth, even where nothing is seen */
 static const double EXPOSURE = 7;    /* white, where the 90 % point of value times cosine is 1: that of a sphere, within a half */
 static const double AMBIENT = 0.3;   /* of white: what else a pixel holds */
@@ -122,7 +122,7 @@ static double white_of(const double bins[BINS])
 	return EXPOSURE * fast_exp2((double)n / PER_OCTAVE - 64);
 }
 
-void spectral_weights_find(const struct lattice *lattice, double unit, uint8_t weights[SPECTRAL_WEIGHTS])
+void spectral_weights_find(const struct lattice *lattice, double unit, struct spectral_weights *out)
 {
 	const struct lattice_dims d = lattice->dims;
 	double bins[BINS] = {0}, steps[SPECTRAL_WEIGHTS], finest = INFINITY, picture = 0, cells = 0;
@@ -130,9 +130,10 @@ void spectral_weights_find(const struct lattice *lattice, double unit, uint8_t w
 	struct centres centres;
 	struct survey survey = {.lattice = lattice, .centres = &centres, .factor = 1 / unit, .bins = bins};
 
-	memset(weights, 0, SPECTRAL_WEIGHTS);
+	memset(out, 0, sizeof *out);
 	if (d.theta_h < LEAST_CELLS || d.theta_d < LEAST_CELLS)
 		return;
+	out->graded = true;
 	centres_fill(d, &centres);
 	table_survey(&survey);
 	survey.factor /= white_of(bins);
@@ -150,5 +151,5 @@ void spectral_weights_find(const struct lattice *lattice, double unit, uint8_t w
 		finest = fmin(finest, steps[r]);
 	}
 	for (int r = 0; r < SPECTRAL_WEIGHTS; r++)
-		weights[r] = (uint8_t)fmin(16 * (steps[r] - finest) + 0.5, 255);
+		out->weight[r] = (uint8_t)fmin(2 * (steps[r] - finest) + 0.5, SPECTRAL_WEIGHT_MOST);
 }

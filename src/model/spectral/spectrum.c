@@ -26,7 +26,7 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
 	return levels;
 }
 
-bp_status spectrum_create(struct lattice_dims dims, bool cut, struct spectrum **out, bp_error *error)
+bp_status spectrum_create(struct lattice_dims dims, float limit, struct spectrum **out, bp_error *error)
 {
 	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d;
 	struct spectrum *t = calloc(1, sizeof *t);
@@ -38,11 +38,11 @@ bp_status spectrum_create(struct lattice_dims dims, bool cut, struct spectrum **
 	t->scratch = malloc(12 * longest * sizeof(float));
 	bp_status status =
 		t->scratch ? cosines_create(dims.phi_d, &t->cosines, error) : error_memory(error, 12 * longest * sizeof(float));
-	if (!status && cut) {
+	if (!status && limit > 0) {
 		t->span = malloc((size_t)dims.theta_h * dims.theta_d * sizeof *t->span);
 		status = t->span ? BP_OK : error_memory(error, (size_t)dims.theta_h * dims.theta_d * sizeof *t->span);
 		if (!status) {
-			spans_find(dims, t->span);
+			spans_find(dims, limit, t->span);
 			status =
 				span_cosines_create(dims.phi_d, t->span, (size_t)dims.theta_h * dims.theta_d, dims.phi_d, false, &t->cut, error);
 		}

@@ -26,8 +26,8 @@ enum { SPECTRUM_LEVELS_MAX = 7 };
 
 struct spectrum; /* tables and scratch for tables of one size; one thread at a time */
 
-/* cut: rows of phi_d are cut at the horizon (spans.h); their harmonics are those of their spans. */
-bp_status spectrum_create(struct lattice_dims dims, bool cut, struct spectrum **out, bp_error *error);
+/* limit: rows of phi_d are cut there (spans.h), and their harmonics are those of their spans; 0: they are whole. */
+bp_status spectrum_create(struct lattice_dims dims, float limit, struct spectrum **out, bp_error *error);
 void spectrum_free(struct spectrum *spectrum); /* NULL is allowed */
 
 /* The rows' spans (spans.h), [theta_h theta_d]; NULL where they are whole. The spectrum's own. */

@@ -51,12 +51,15 @@ bp_status spectrum_inverse_create(struct lattice_dims d, struct spectrum_inverse
 	t->levels = spectrum_levels(d.theta_h, d.theta_d);
 	t->place = malloc(rows * sizeof *t->place);
 	t->gain = malloc(rows * sizeof *t->gain);
+	t->harmonic = malloc(d.phi_d * sizeof *t->harmonic);
 	t->cosine = malloc(4 * (size_t)d.phi_d * sizeof *t->cosine);
-	if (!t->place || !t->gain || !t->cosine) {
+	if (!t->place || !t->gain || !t->harmonic || !t->cosine) {
 		spectrum_inverse_free(t);
 		return error_memory(error, rows * sizeof *t->place);
 	}
 	places_fill(t);
+	for (uint32_t m = 0; m < d.phi_d; m++)
+		t->harmonic[m] = 1;
 	const double scale = sqrt(2.0 / d.phi_d);
 	for (uint32_t a = 0; a < 4 * d.phi_d; a++)
 		t->cosine[a] = (float)(scale * cosines_exact(a, d.phi_d));
@@ -70,6 +73,7 @@ void spectrum_inverse_free(struct spectrum_inverse *t)
 		return;
 	free(t->place);
 	free(t->gain);
+	free(t->harmonic);
 	free(t->cosine);
 	free(t);
 }

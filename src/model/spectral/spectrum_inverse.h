@@ -28,16 +28,18 @@ struct spectrum_inverse {
 	uint32_t levels;
 	uint32_t *place; /* of the spectrum's row theta_h * D + theta_d */
 	float *gain;
-	float *cosine; /* sqrt(2 / P) cos(pi a / 2 P), a = 0..4 P - 1 */
+	float *harmonic; /* a gain of each, besides: 1 */
+	float *cosine;   /* sqrt(2 / P) cos(pi a / 2 P), a = 0..4 P - 1 */
 };
 
 bp_status spectrum_inverse_create(struct lattice_dims dims, struct spectrum_inverse **out, bp_error *error);
 void spectrum_inverse_free(struct spectrum_inverse *inverse); /* NULL is allowed */
 
-/* The coefficient `value` in row theta_h * D + theta_d of the spectrum. */
-static inline struct spectrum_term spectrum_term_make(const struct spectrum_inverse *inverse, uint32_t row, float value)
+/* The coefficient `value` in row theta_h * D + theta_d of the spectrum, of a harmonic. */
+static inline struct spectrum_term spectrum_term_make(const struct spectrum_inverse *inverse, uint32_t row, uint32_t harmonic,
+                                                      float value)
 {
-	return (struct spectrum_term){inverse->place[row], value * inverse->gain[row]};
+	return (struct spectrum_term){inverse->place[row], value * (inverse->gain[row] * inverse->harmonic[harmonic])};
 }
 
 /*

@@ -38,8 +38,8 @@ static uint32_t row_of_half(const struct spectrum_rows *t, uint32_t r)
 	return 2 * (r / t->wide * t->dims.theta_d + r % t->wide);
 }
 
-bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t harmonics, bool half, struct spectrum_rows **out,
-                               bp_error *error)
+bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, float limit, uint32_t harmonics, bool half,
+                               struct spectrum_rows **out, bp_error *error)
 {
 	const struct lattice_dims d = inverse->dims;
 	const size_t rows = (size_t)d.theta_h * d.theta_d, lanes_bytes = SPAN_ROWS * (d.phi_d + 4 * STEP) * sizeof(float);
@@ -58,7 +58,7 @@ bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t 
 	t->line = malloc(SPAN_ROWS * (size_t)d.phi_d * sizeof(float));
 	bp_status status = t->span && (t->plane || !half) && t->lanes && t->line ? BP_OK : error_memory(error, lanes_bytes);
 	if (!status) {
-		spans_find(d, t->span);
+		spans_find(d, limit, t->span);
 		for (uint32_t r = 0; r < t->high * t->wide && half; r++) /* never before where it is read */
 			t->span[r] = t->span[row_of_half(t, r)];
 		status = span_cosines_create(d.phi_d, t->span, (size_t)t->high * t->wide, harmonics, true, &t->cosines, error);

@@ -13,9 +13,9 @@ enum { SPECTRUM_FIELDS = 3 };
 
 struct spectrum_rows; /* of up to SPECTRUM_FIELDS fields; one thread at a time */
 
-/* half: every second row along theta_h and theta_d, every second cell of them. No field has a term of harmonic `harmonics` or above. */
-bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, uint32_t harmonics, bool half, struct spectrum_rows **out,
-                               bp_error *error);
+/* half: every second row along theta_h and theta_d, every second cell of them. No field has a term of harmonic `harmonics` or above. limit: spans.h. */
+bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, float limit, uint32_t harmonics, bool half,
+                               struct spectrum_rows **out, bp_error *error);
 void spectrum_rows_free(struct spectrum_rows *rows); /* NULL is allowed */
 
 /* The wavelets of one field, from the terms start[m]..start[m + 1] - 1 of every harmonic m. */
