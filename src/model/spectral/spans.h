@@ -1,5 +1,5 @@
 /*
- * spans.h: rows of phi_d cut at the horizon, and cosine transforms of what is left of them.
+ * spans.h: rows of phi_d cut at the horizon or where measurements end, and cosine transforms of what is left of them.
  *
  * A direction below the horizon is never asked for, so of the row of a (theta_h, theta_d) only the cells that can be seen need a value:
  * `span` of them, around pi/2. Their cosine transform has as many coefficients (Sikora and Makai 1995, "Shape-adaptive DCT"), where that of
