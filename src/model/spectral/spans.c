@@ -75,7 +75,7 @@ void spans_find(struct lattice_dims d, float limit, uint16_t *span)
 	}
 }
 
-/* The tables of span n, of p cells; false where there is no memory. */
+/* The matrices of span n, of p cells; false where there is no memory. */
 static bool matrices_make(uint32_t n, uint32_t p, uint32_t harmonics, bool inverse, struct matrices *out)
 {
 	const double scale = inverse ? sqrt(2.0 / p) : sqrt(2.0 * p) / n; /* g sqrt(2/n), and sqrt(2/n) / g */
