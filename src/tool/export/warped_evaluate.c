@@ -5,9 +5,8 @@
 /* Bilinear in a grid of size x size. */
 static double grid_at(const float *grid, uint32_t size, const double at[2])
 {
-	const double px = at[0] * (size - 1), py = at[1] * (size - 1);
-	const uint32_t x = px >= size - 1 ? size - 2 : (uint32_t)px, y = py >= size - 1 ? size - 2 : (uint32_t)py;
-	const double fx = px - x, fy = py - y;
+	double fx, fy;
+	const uint32_t x = unit_cell(at[0], size, &fx), y = unit_cell(at[1], size, &fy);
 	const float *corner = grid + (size_t)y * size + x;
 	return (1 - fy) * ((1 - fx) * corner[0] + fx * corner[1]) + fy * ((1 - fx) * corner[size] + fx * corner[size + 1]);
 }
