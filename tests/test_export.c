@@ -174,7 +174,7 @@ static void a_tensor_file_is_laid_out_as_specified(void **state)
 	(void)state;
 	const uint8_t letters[3] = {'a', 'b', 'c'};
 	const float numbers[6] = {0, 1, 2, 3, 4, -0.5f};
-	const struct tensor fields[] = {{"text", TENSOR_NUMBER_U8, 1, {3}, letters}, {"n", TENSOR_NUMBER_F32, 2, {2, 3}, numbers}};
+	const struct tensor fields[] = {{"text", TENSOR_U8, 1, {3}, letters}, {"n", TENSOR_F32, 2, {2, 3}, numbers}};
 	struct byte_buffer file = {0};
 	tensor_file_write(fields, 2, &file);
 	assert_false(file.failed);

@@ -37,25 +37,24 @@ static size_t tensors_list(const struct warped *warped, const struct parts *part
 	const struct warped_shape *shape = &warped->shape;
 	const uint64_t angles = shape->angles, size = shape->size;
 	const struct tensor list[] = {
-		{"version", TENSOR_NUMBER_U32, 1, {2}, parts->version},
-		{"description", TENSOR_NUMBER_U8, 1, {description_bytes}, parts->description},
-		{"phi_i", TENSOR_NUMBER_F32, 1, {1}, &parts->phi_i},
-		{"theta_i", TENSOR_NUMBER_F32, 1, {angles}, warped->theta_i},
-		{"ndf", TENSOR_NUMBER_F32, 2, {2, WARPED_NORMALS}, parts->ndf},
-		{"sigma", TENSOR_NUMBER_F32, 2, {2, WARPED_NORMALS}, parts->sigma},
-		{"vndf", TENSOR_NUMBER_F32, 4, {1, angles, shape->height, shape->width}, warped->visible.density},
-		{"luminance", TENSOR_NUMBER_F32, 4, {1, angles, size, size}, warped->luminance},
-		{"jacobian", TENSOR_NUMBER_U8, 1, {1}, &parts->jacobian},
+		{"version", TENSOR_U32, 1, {2}, parts->version},
+		{"description", TENSOR_U8, 1, {description_bytes}, parts->description},
+		{"phi_i", TENSOR_F32, 1, {1}, &parts->phi_i},
+		{"theta_i", TENSOR_F32, 1, {angles}, warped->theta_i},
+		{"ndf", TENSOR_F32, 2, {2, WARPED_NORMALS}, parts->ndf},
+		{"sigma", TENSOR_F32, 2, {2, WARPED_NORMALS}, parts->sigma},
+		{"vndf", TENSOR_F32, 4, {1, angles, shape->height, shape->width}, warped->visible.density},
+		{"luminance", TENSOR_F32, 4, {1, angles, size, size}, warped->luminance},
+		{"jacobian", TENSOR_U8, 1, {1}, &parts->jacobian},
 	};
 	size_t count = sizeof list / sizeof *list;
 	for (size_t n = 0; n < count; n++)
 		tensor[n] = list[n];
 	if (spectral) {
-		tensor[count++] = (struct tensor){"wavelengths", TENSOR_NUMBER_F32, 1, {UPSAMPLING_COUNT}, UPSAMPLING_WAVELENGTHS};
-		tensor[count++] =
-			(struct tensor){"spectra", TENSOR_NUMBER_F32, 5, {1, angles, UPSAMPLING_COUNT, size, size}, parts->spectra};
+		tensor[count++] = (struct tensor){"wavelengths", TENSOR_F32, 1, {UPSAMPLING_COUNT}, UPSAMPLING_WAVELENGTHS};
+		tensor[count++] = (struct tensor){"spectra", TENSOR_F32, 5, {1, angles, UPSAMPLING_COUNT, size, size}, parts->spectra};
 	} else {
-		tensor[count++] = (struct tensor){"rgb", TENSOR_NUMBER_F32, 5, {1, angles, 3, size, size}, warped->rgb};
+		tensor[count++] = (struct tensor){"rgb", TENSOR_F32, 5, {1, angles, 3, size, size}, warped->rgb};
 	}
 	return count;
 }

@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "reflectance.h"
+#include "rgl/grid.h"
 
 /* Density over (u, v): a solid angle dm is 2 pi^2 u sin theta du dv. */
 static double density_at(const struct normals *normals, struct visible_mix mix, double theta_i, double u, double v)
@@ -68,14 +69,6 @@ void visible_free(struct visible *visible)
 	*visible = (struct visible){0};
 }
 
-uint32_t unit_cell(double at, size_t count, double *into)
-{
-	const double place = fmin(fmax(at, 0), 1) * (double)(count - 1);
-	const uint32_t cell = (uint32_t)fmin(place, (double)(count - 2));
-	*into = place - cell;
-	return cell;
-}
-
 void visible_mirror(const double wi[3], const double at[2], double wo[3])
 {
 	double m[3];
@@ -112,7 +105,7 @@ void visible_warp(const struct visible *visible, uint32_t angle, double weight, 
 {
 	const size_t width = visible->width, points = width * visible->height;
 	double fx, fy;
-	const uint32_t x = unit_cell(at[0], visible->width, &fx), y = unit_cell(at[1], visible->height, &fy);
+	const size_t x = grid_node(at[0], width, &fx), y = grid_node(at[1], visible->height, &fy);
 	const float *corner = visible->density + angle * points + y * width + x;
 	const double left = between(mixed_density(corner, points, weight), mixed_density(corner + width, points, weight), fy);
 	const double right =

@@ -38,9 +38,6 @@ void visible_warp(const struct visible *visible, uint32_t angle, double weight, 
 /* wi at azimuth 0 -> wo, mirrored at the half vector (u, v). */
 void visible_mirror(const double wi[3], const double at[2], double wo[3]);
 
-/* The step of `count` nodes over [0, 1] in which a coordinate lies, and how far into it. */
-uint32_t unit_cell(double at, size_t count, double *into);
-
 /* (s, t) -> (u, v) by one angle: the other way round. */
 void visible_unwarp(const struct visible *visible, uint32_t angle, const double at[2], double out[2]);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "rgl/grid.h"
 #include "warped.h"
 
 /* Gauss's two points of a unit step: on these the mean of a cubic is that of its values. */
@@ -72,7 +73,7 @@ static void probe_add(const struct warped *warped, uint32_t angle, size_t n, str
 	const size_t size = warped->shape.size, points = size * size;
 	const double next = GAUSS[n >= probes->count / 2], side[SIDES] = {1 - next, next};
 	double fx, fy, missing[3];
-	const size_t corner = unit_cell(probes->at[n][0], size, &fx) + size * unit_cell(probes->at[n][1], size, &fy);
+	const size_t corner = grid_node(probes->at[n][0], size, &fx) + size * grid_node(probes->at[n][1], size, &fy);
 	const size_t sample[4] = {corner, corner + 1, corner + size, corner + size + 1};
 	const double weight[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
 	for (size_t c = 0; c < 3; c++) {
