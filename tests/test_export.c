@@ -56,7 +56,7 @@ static void warped_fields_give_the_material_back(void **state)
 {
 	(void)state;
 	const struct reflectance reflectance = {plastic_evaluate, &PLASTIC};
-	const struct warped_shape shape = {22, 56, 39, 80};
+	const struct warped_shape shape = {22, 56, 39, 80, {0.5, 0.1}};
 	struct warped warped;
 	int off = 0;
 	assert_int_equal(warped_make(&reflectance, &shape, &warped, NULL), BP_OK);
@@ -83,11 +83,35 @@ static void warped_fields_give_the_material_back(void **state)
 }
 
 /* Readers divide by the sum of each slice of luminance. */
+/* A lobe is hollow at its sides, where straight lines between samples lie above it; the mean of the differences is small nevertheless. */
+static void between_samples_the_mean_is_right(void **state)
+{
+	(void)state;
+	const struct reflectance reflectance = {plastic_evaluate, &PLASTIC};
+	const struct warped_shape shape = {11, 24, 19, 18, {0.5, 0.1}};
+	struct warped warped;
+	double sum = 0, sum_absolute = 0;
+	assert_int_equal(warped_make(&reflectance, &shape, &warped, NULL), BP_OK);
+	for (int n = 0; n < 20000; n++) {
+		float wi[3], wo[3];
+		double wanted[3], got[3];
+		direction(1.2 * fmod(n * 0.618034, 1), n, wi);
+		direction(1.2 * fmod(n * 0.754878, 1), n * 1.7, wo);
+		plastic_value(&PLASTIC, wi, wo, wanted);
+		warped_evaluate(&warped, wi, wo, got);
+		sum += got[0] - wanted[0] * wo[2];
+		sum_absolute += fabs(got[0] - wanted[0] * wo[2]);
+	}
+	if (!(fabs(sum) < 0.1 * sum_absolute))
+		fail_msg("%g of %g", sum, sum_absolute);
+	warped_free(&warped);
+}
+
 static void a_black_material_has_luminance_all_the_same(void **state)
 {
 	(void)state;
 	const struct reflectance reflectance = {plastic_evaluate, &BLACK};
-	const struct warped_shape shape = {3, 8, 8, 5};
+	const struct warped_shape shape = {3, 8, 8, 5, {0.5, 0.1}};
 	struct warped warped;
 	assert_int_equal(warped_make(&reflectance, &shape, &warped, NULL), BP_OK);
 	for (int n = 0; n < 3 * 25; n++)
@@ -100,7 +124,7 @@ static void what_no_float_holds_is_refused(void **state)
 	(void)state;
 	const struct plastic blinding = {{3e38, 3e38, 3e38}, 0, 1};
 	const struct reflectance reflectance = {plastic_evaluate, &blinding};
-	const struct warped_shape shape = {3, 8, 8, 5};
+	const struct warped_shape shape = {3, 8, 8, 5, {0.5, 0.1}};
 	struct warped warped;
 	bp_error error;
 	assert_int_equal(warped_make(&reflectance, &shape, &warped, &error), BP_ERROR_BAD_INPUT);
@@ -150,7 +174,7 @@ static void a_tensor_file_is_laid_out_as_specified(void **state)
 	(void)state;
 	const uint8_t letters[3] = {'a', 'b', 'c'};
 	const float numbers[6] = {0, 1, 2, 3, 4, -0.5f};
-	const struct tensor fields[] = {{"text", TENSOR_NUMBER_U8, 1, {3}, letters}, {"n", TENSOR_NUMBER_F32, 2, {2, 3}, numbers}};
+	const struct tensor fields[] = {{"text", TENSOR_U8, 1, {3}, letters}, {"n", TENSOR_F32, 2, {2, 3}, numbers}};
 	struct byte_buffer file = {0};
 	tensor_file_write(fields, 2, &file);
 	assert_false(file.failed);
@@ -177,14 +201,15 @@ static void files_are_as_large_as_needed_and_no_larger_than_told(void **state)
 {
 	(void)state;
 	const struct reflectance reflectance = {plastic_evaluate, &PLASTIC};
-	const uint64_t most[] = {export_bsdf_least(false), 200000, 100000000};
+	const uint64_t most[] = {export_bsdf_least(false), 80000, 100000000};
 	double before = 0;
 	for (int n = 0; n < 3; n++) {
 		const struct export_options options = {EXPORT_BSDF, false, most[n]};
 		struct byte_buffer file = {0};
 		struct deviation deviation;
 		assert_int_equal(export_bsdf(&reflectance, "plastic", &options, &file, &deviation, NULL), BP_OK);
-		assert_true(file.count <= most[n] && deviation.psnr > before);
+		if (!(file.count <= most[n] && deviation.psnr > before))
+			fail_msg("%zu bytes, %g dB", file.count, deviation.psnr);
 		assert_memory_equal(file.bytes, "tensor_file", 12);
 		before = deviation.psnr;
 		if (n == 2)
@@ -240,6 +265,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(warped_fields_give_the_material_back),
+		cmocka_unit_test(between_samples_the_mean_is_right),
 		cmocka_unit_test(a_black_material_has_luminance_all_the_same),
 		cmocka_unit_test(what_no_float_holds_is_refused),
 		cmocka_unit_test(deviation_is_that_of_spheres_and_albedos),

@@ -100,7 +100,7 @@ static void visible_of(double alpha, uint32_t angles, const float *theta_i, uint
 	struct normals normals;
 	ggx_profile(alpha, profile);
 	assert_int_equal(normals_make(NODES, profile, &normals, NULL), BP_OK);
-	assert_int_equal(visible_make(&normals, angles, theta_i, width, height, out, NULL), BP_OK);
+	assert_int_equal(visible_make(&normals, (struct visible_mix){0.5, 0.2}, angles, theta_i, width, height, out, NULL), BP_OK);
 	normals_free(&normals);
 }
 

@@ -178,6 +178,37 @@ static void a_lobe_narrower_than_the_cell_is_averaged(void **state)
 	made_free(&made);
 }
 
+/* Normals with a ridge at the centre of cell 1, straight to the centres around it: as samples of a table are interpolated. */
+static void a_lobe_that_the_lattice_resolves_has_its_value_at_the_centre(void **state)
+{
+	(void)state;
+	enum { NODES = 181, SIDE = 400, SAMPLES = 40 };
+	struct made_file made = {0};
+	struct lattice lattice;
+	struct origin origin;
+	made_material(&made);
+	const uint64_t ndf[2] = {2, NODES}, vndf[4] = {1, MADE_ANGLES, 2, SIDE}, rgb[5] = {1, MADE_ANGLES, 3, 2, SAMPLES};
+	const uint64_t sigma[2] = {2, 2};
+	struct made_field *normals = made_set(&made, "ndf", TENSOR_F32, 2, ndf, 1);
+	for (uint64_t n = 0; n < 2 * NODES; n++)
+		normals->values[n] += n % NODES == 3 ? 2 : n % NODES == 2 || n % NODES == 4 ? 1 : 0;
+	made_set(&made, "sigma", TENSOR_F32, 2, sigma, 0.25);
+	struct made_field *density = made_set(&made, "vndf", TENSOR_F32, 4, vndf, 0);
+	for (uint64_t n = 0; n < made_count(density); n++)
+		density->values[n] = n % SIDE <= 20 ? 1 : 0;
+	made_set(&made, "rgb", TENSOR_F32, 5, rgb, 1);
+	made_remove(&made, "luminance");
+	made_remove(&made, "valid");
+	assert_int_equal(made_read(&made, &lattice, &origin, NULL), BP_OK);
+	double cosine[2];
+	cosines_at(1, 10, 90, cosine);
+	const double value = lattice.rgb[0][lattice_index(LATTICE_MERL, 1, 10, 90)] / (0.5 / cosine[0] + 0.5 / cosine[1]);
+	if (!(fabs(value - 3) < 0.02)) /* the mean of the cell is 2.5 */
+		fail_msg("value %g", value);
+	lattice_free(&lattice);
+	made_free(&made);
+}
+
 static void cells_without_data_in_a_direction_are_invalid(void **state)
 {
 	(void)state;
@@ -454,6 +485,7 @@ int main(void)
 		cmocka_unit_test(a_computed_file_has_values_to_the_horizon),
 		cmocka_unit_test(azimuths_are_those_of_the_cell),
 		cmocka_unit_test(a_lobe_narrower_than_the_cell_is_averaged),
+		cmocka_unit_test(a_lobe_that_the_lattice_resolves_has_its_value_at_the_centre),
 		cmocka_unit_test(cells_without_data_in_a_direction_are_invalid),
 		cmocka_unit_test(every_beginning_of_a_tensor_file_is_refused),
 		cmocka_unit_test(an_anisotropic_file_is_refused_early),

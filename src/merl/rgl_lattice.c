@@ -9,6 +9,8 @@
 
 #define PI 3.14159265358979323846
 #define COSINE_LEAST 1e-3 /* of a part of a cell whose centre is measured */
+#define STRAIGHT 0.1      /* of a value at a cell's edge */
+enum { PROBED = 6 };      /* values of theta_d at which that is looked at */
 
 /* A half angle on the lattice's axis, 0 to 1, and two directions around it: d = (theta_d, phi_d) turned by theta_h. */
 struct pair {
@@ -112,14 +114,47 @@ static void cells_fill(struct filling *filling, uint32_t i, uint32_t j, uint32_t
 	cell_store(filling, mirror, &mirrored);
 }
 
-/* As many parts as the material has samples within the cell, at the incidence where there are most. */
+/* Both directions' values, summed, at a place of the lattice's axis; of theta_d, and phi_d = 90 degrees. */
+static double level_at(const struct rgl_material *material, double axis, struct angle d)
+{
+	struct pair pair;
+	struct cell cell = {0};
+	pair_make(axis, d, angle_of(1), &pair);
+	cell_add(material, &pair, 1, &cell);
+	return cell.way[0].rgb[0] + cell.way[0].rgb[1] + cell.way[0].rgb[2] + cell.way[1].rgb[0] + cell.way[1].rgb[1] +
+	       cell.way[1].rgb[2];
+}
+
+/*
+ * Whether the lattice resolves the function here: at the cell's edges it is what a reader of the table interpolates between the cells'
+ * centres. Then a centre's value is the better one, since a mean over the cell would make the lobe wider.
+ */
+static bool centres_suffice(const struct rgl_material *material, uint32_t i, uint32_t extent)
+{
+	for (int j = 0; j < PROBED; j++) {
+		const struct angle d = angle_of((j + 0.5) / PROBED);
+		const double centre = level_at(material, (i + 0.5) / extent, d);
+		for (int side = -1; side <= 1; side += 2) {
+			const double next = i + 0.5 + side, at = i + 0.5 + 0.5 * side;
+			if (next > extent)
+				continue;
+			const double edge = level_at(material, at / extent, d);
+			const double straight = 0.5 * (centre + level_at(material, fabs(next) / extent, d));
+			if (!(fabs(edge - straight) <= STRAIGHT * edge))
+				return false;
+		}
+	}
+	return true;
+}
+
+/* As many parts as the material has samples within the cell, at the incidence where there are most; one where centres suffice. */
 static uint32_t parts_of(const struct rgl_material *material, uint32_t i, uint32_t extent)
 {
 	const double from = (double)i / extent, to = (i + 1.0) / extent;
 	double most = 1;
 	for (size_t angle = 0; angle < material->angles; angle++)
 		most = fmax(most, rgl_samples_between(material, angle, from * from * (PI / 2), to * to * (PI / 2)));
-	return (uint32_t)fmin(ceil(most), RGL_PARTS_MOST);
+	return most > 1 && centres_suffice(material, i, extent) ? 1 : (uint32_t)fmin(ceil(most), RGL_PARTS_MOST);
 }
 
 bp_status rgl_lattice_make(const struct rgl_material *material, struct lattice *out, struct origin *origin, bp_error *error)

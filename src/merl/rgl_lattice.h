@@ -16,7 +16,8 @@
 
 /*
  * Fills a new lattice of MERL's extents, in 1/sr. A cell has the mean of both directions' values at its centre; where the material's
- * samples lie closer along theta_h than the cell is wide (its lobe is narrower than the lattice), the mean over up to RGL_PARTS_MOST parts of the cell's
+ * samples lie closer along theta_h than the cell is wide, and its values at the cell's edges are not what is interpolated between
+ * centres to a tenth (its lobe is narrower than the lattice), the mean over up to RGL_PARTS_MOST parts of the cell's
  * theta_h, equally wide on the lattice's axis. A cell is valid where both angles are at most RGL_ANGLE_MOST (of a measured file) and the file's last theta_i,
  * and in either direction more than half the weight is on samples with data. *origin tells how far the two directions were apart
  * before. The caller frees *out.

@@ -1,28 +1,14 @@
 /* rgl_material_evaluate.c: the function that a material's file stands for, at one pair of directions. */
 #include <math.h>
 
+#include "grid.h"
 #include "rgl_material.h"
 
 #define PI 3.14159265358979323846
 
-/* The node before a coordinate of the unit interval, and how far behind it. */
-static size_t node_of(double x, size_t nodes, double *fraction)
-{
-	const double scaled = x * (double)(nodes - 1);
-	size_t node = (size_t)scaled;
-	if (node > nodes - 2)
-		node = nodes - 2;
-	*fraction = scaled - (double)node;
-	return node;
-}
-
 static double grid_at(const struct rgl_grid *grid, double x, double y)
 {
-	double fx, fy;
-	const float *v = grid->values + node_of(x, grid->width, &fx);
-	v += node_of(y, grid->height, &fy) * grid->width;
-	return (1 - fy) * ((1 - fx) * (double)v[0] + fx * (double)v[1]) +
-	       fy * ((1 - fx) * (double)v[grid->width] + fx * (double)v[grid->width + 1]);
+	return grid_bilinear(grid->values, grid->width, grid->height, x, y);
 }
 
 /* The last angle that is not above theta, and how far theta is on its way to the next. */
@@ -46,7 +32,7 @@ static struct warp_place place_of(const struct rgl_material *material, double th
 static void samples_add(const struct rgl_material *material, size_t angle, double weight, double sx, double sy, double sum[4])
 {
 	double fx, fy;
-	const size_t ix = node_of(sx, material->width, &fx), iy = node_of(sy, material->height, &fy);
+	const size_t ix = grid_node(sx, material->width, &fx), iy = grid_node(sy, material->height, &fy);
 	const float *v = material->samples + 4 * ((angle * material->height + iy) * material->width + ix);
 	const float *below = v + 4 * material->width;
 	const double a = weight * (1 - fy) * (1 - fx), b = weight * (1 - fy) * fx, c = weight * fy * (1 - fx), d = weight * fy * fx;

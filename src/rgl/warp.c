@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "grid.h"
+
 int warp_alloc(struct warp *warp, size_t slices, size_t height, size_t width)
 {
 	const size_t nodes = slices * height * width;
@@ -68,17 +70,6 @@ int warp_fill(struct warp *warp, size_t slice, double *values, size_t *at)
 	return 0;
 }
 
-/* The node before a coordinate of the unit interval, and how far behind it. */
-static size_t node_of(double x, size_t nodes, double *fraction)
-{
-	const double scaled = x * (double)(nodes - 1);
-	size_t node = (size_t)scaled;
-	if (node > nodes - 2)
-		node = nodes - 2;
-	*fraction = scaled - (double)node;
-	return node;
-}
-
 static double mix(double a, double b, double t) { return a + t * (b - a); }
 
 static double unit(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
@@ -87,7 +78,7 @@ void warp_invert(const struct warp *warp, struct warp_place place, double x, dou
 {
 	const size_t height = warp->height, width = warp->width, slice = place.slice, more = place.next > 0;
 	double fx, fy;
-	const size_t ix = node_of(x, width, &fx), iy = node_of(y, height, &fy);
+	const size_t ix = grid_node(x, width, &fx), iy = grid_node(y, height, &fy);
 	const size_t corner = (slice * height + iy) * width + ix, row_end = (slice * height + iy) * width + width - 1;
 	const size_t step = more * height * width; /* to the same node of the next slice */
 	const float *d = warp->density + corner, *c = warp->along_row;

@@ -292,7 +292,7 @@ const struct command command_extract = {
 			 "      --format mbsdf   DIR/NAME.mbsdf, a measured BSDF for renderers with NVIDIA's MDL\n"
 			 "      --spectral       bsdf: with a smooth spectrum instead of RGB, for pbrt-v4 and spectral Mitsuba\n"
 			 "      --size BYTES     bsdf, mbsdf: the largest file (2M; --spectral 8M; mbsdf 20M). It is the smallest\n"
-			 "                       with spheres 50 dB from the material's, or the best that fits\n"
+			 "                       with spheres 52 dB from the material's, or the best that fits\n"
 			 "      --force          replace files that are there\n"
 			 "      --any-lattice    also tables of more than twice as many cells as MERL's\n"
 			 "      --plain          no record: every cell below the horizon is -1\n"

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 struct show_options {
 	const char *output, *reference;
@@ -53,7 +54,22 @@ static bool angles_take(const struct command *command, const struct option_rule 
 	}
 }
 
-/* The measured file that belongs to an archived material: the path itself, or NAME.binary in that folder. Another one than was packed is told. */
+/* The measured file of a material in a folder: NAME.binary, or NAME.bsdf where that is what there is. malloc'ed; NULL: no memory. */
+static char *measured_path(const char *folder, const char *name)
+{
+	char *binary = NULL, *tensor = NULL;
+	if (asprintf(&binary, "%s/%s.binary", folder, name) < 0)
+		return NULL;
+	if (asprintf(&tensor, "%s/%s.bsdf", folder, name) < 0) {
+		free(binary);
+		return NULL;
+	}
+	const bool other = access(binary, F_OK) != 0 && access(tensor, F_OK) == 0;
+	free(other ? binary : tensor);
+	return other ? tensor : binary;
+}
+
+/* The measured file that belongs to an archived material: the path itself, or that of its name in that folder. Another one than was packed is told. */
 static bp_status reference_read(const char *path, const struct record_head *head, struct lattice *out, bp_error *error)
 {
 	struct sha256 sha;
@@ -61,7 +77,7 @@ static bp_status reference_read(const char *path, const struct record_head *head
 	struct stat status;
 	char *file = NULL;
 	bp_error reason;
-	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && asprintf(&file, "%s/%s.binary", path, head->name) < 0)
+	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && !(file = measured_path(path, head->name)))
 		return error_memory(error, 512);
 	sha256_start(&sha);
 	bp_status result = lattice_read_path(
@@ -222,8 +238,8 @@ const struct command command_show = {
 			 "\n"
 			 "  -o, --output=FILE    the picture to write; an older one that brdfpack drew is replaced\n"
 			 "      --force          replace whatever is there\n"
-			 "      --measured=PATH  the measured file of an archived material, or its folder; without it only the\n"
-			 "                       decoded densities are drawn\n"
+			 "      --measured=PATH  the measured file of an archived material, or its folder (NAME.binary or\n"
+			 "                       NAME.bsdf in it); without it only the decoded densities are drawn\n"
 			 "      --theta-h=LIST   up to 12 angles in degrees (5,20,40,60,80)\n"
 			 "      --profile=NAME   how a MERL file is packed: spectral or paper (paper)\n"
 			 "  -h, --help           this text\n",

@@ -20,7 +20,7 @@ struct deviation {
 
 #define DEVIATION_WORST ((struct deviation){-HUGE_VAL, HUGE_VAL})
 
-/* Whether a file need not be larger: at least 50 dB, and albedos within half a per cent. */
+/* Whether a file need not be larger: at least 52 dB, and albedos within half a per cent. */
 bool deviation_suffices(const struct deviation *deviation);
 
 /* f cos theta_o of an exported file, by its own look-up. */

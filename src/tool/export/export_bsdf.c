@@ -18,7 +18,7 @@ enum { SIZE_COUNT = sizeof SIZES / sizeof *SIZES };
 /* The other axes follow: more samples pay where visible normals and angles of incidence are known as well. */
 static struct warped_shape shape_of(uint32_t size)
 {
-	return (struct warped_shape){.angles = 6 + size / 5, .width = 16 + size / 2, .height = 13 + size / 3, .size = size};
+	return (struct warped_shape){.angles = 6 + size / 3, .width = 16 + size / 2, .height = 13 + size / 3, .size = size};
 }
 
 /* What a file holds beside the fields' own arrays. */
@@ -37,25 +37,24 @@ static size_t tensors_list(const struct warped *warped, const struct parts *part
 	const struct warped_shape *shape = &warped->shape;
 	const uint64_t angles = shape->angles, size = shape->size;
 	const struct tensor list[] = {
-		{"version", TENSOR_NUMBER_U32, 1, {2}, parts->version},
-		{"description", TENSOR_NUMBER_U8, 1, {description_bytes}, parts->description},
-		{"phi_i", TENSOR_NUMBER_F32, 1, {1}, &parts->phi_i},
-		{"theta_i", TENSOR_NUMBER_F32, 1, {angles}, warped->theta_i},
-		{"ndf", TENSOR_NUMBER_F32, 2, {2, WARPED_NORMALS}, parts->ndf},
-		{"sigma", TENSOR_NUMBER_F32, 2, {2, WARPED_NORMALS}, parts->sigma},
-		{"vndf", TENSOR_NUMBER_F32, 4, {1, angles, shape->height, shape->width}, warped->visible.density},
-		{"luminance", TENSOR_NUMBER_F32, 4, {1, angles, size, size}, warped->luminance},
-		{"jacobian", TENSOR_NUMBER_U8, 1, {1}, &parts->jacobian},
+		{"version", TENSOR_U32, 1, {2}, parts->version},
+		{"description", TENSOR_U8, 1, {description_bytes}, parts->description},
+		{"phi_i", TENSOR_F32, 1, {1}, &parts->phi_i},
+		{"theta_i", TENSOR_F32, 1, {angles}, warped->theta_i},
+		{"ndf", TENSOR_F32, 2, {2, WARPED_NORMALS}, parts->ndf},
+		{"sigma", TENSOR_F32, 2, {2, WARPED_NORMALS}, parts->sigma},
+		{"vndf", TENSOR_F32, 4, {1, angles, shape->height, shape->width}, warped->visible.density},
+		{"luminance", TENSOR_F32, 4, {1, angles, size, size}, warped->luminance},
+		{"jacobian", TENSOR_U8, 1, {1}, &parts->jacobian},
 	};
 	size_t count = sizeof list / sizeof *list;
 	for (size_t n = 0; n < count; n++)
 		tensor[n] = list[n];
 	if (spectral) {
-		tensor[count++] = (struct tensor){"wavelengths", TENSOR_NUMBER_F32, 1, {UPSAMPLING_COUNT}, UPSAMPLING_WAVELENGTHS};
-		tensor[count++] =
-			(struct tensor){"spectra", TENSOR_NUMBER_F32, 5, {1, angles, UPSAMPLING_COUNT, size, size}, parts->spectra};
+		tensor[count++] = (struct tensor){"wavelengths", TENSOR_F32, 1, {UPSAMPLING_COUNT}, UPSAMPLING_WAVELENGTHS};
+		tensor[count++] = (struct tensor){"spectra", TENSOR_F32, 5, {1, angles, UPSAMPLING_COUNT, size, size}, parts->spectra};
 	} else {
-		tensor[count++] = (struct tensor){"rgb", TENSOR_NUMBER_F32, 5, {1, angles, 3, size, size}, warped->rgb};
+		tensor[count++] = (struct tensor){"rgb", TENSOR_F32, 5, {1, angles, 3, size, size}, warped->rgb};
 	}
 	return count;
 }
@@ -75,22 +74,63 @@ static void evaluate(const void *exported, const float wi[3], const float wo[3],
 	warped_evaluate(exported, wi, wo, rgb);
 }
 
-/* The smallest of the shapes that reaches the figure and fits; else the best that fits. warped_free *out in any case. */
-static bp_status warped_choose(const struct reflectance *reflectance, const struct export_options *options, struct warped *out,
-                               struct deviation *deviation, bp_error *error)
+/* Where samples may lie, and the size at which it is tried. */
+static const struct visible_mix MIXES[] = {{0.3, 0.05}, {0.6, 0.05}, {0.97, 0.01}};
+enum { MIX_COUNT = sizeof MIXES / sizeof *MIXES, MIX_TRIED_AT = 32 };
+
+struct choice {
+	const struct reflectance *reflectance;
+	const struct export_options *options;
+	struct deviation_reference *reference;
+};
+
+static bool fits(const struct choice *choice, uint32_t size)
 {
-	struct deviation_reference *reference = NULL;
-	bp_status status = deviation_reference_make(reflectance, &reference, error);
-	*deviation = DEVIATION_WORST;
-	for (int n = 0; !status && n < SIZE_COUNT && !deviation_suffices(deviation); n++) {
-		const struct warped_shape shape = shape_of(SIZES[n]);
+	return bytes_of(size, choice->options->spectral) <= choice->options->most_bytes;
+}
+
+/* One shape's fields, and how near they come. warped_free *out in any case. */
+static bp_status warped_try(const struct choice *choice, uint32_t size, struct visible_mix mix, struct warped *out,
+                            struct deviation *deviation, bp_error *error)
+{
+	struct warped_shape shape = shape_of(size);
+	shape.mix = mix;
+	bp_status status = warped_make(choice->reflectance, &shape, out, error);
+	return status ? status : deviation_measure(choice->reference, evaluate, out, deviation, error);
+}
+
+/* The mix that is best at a middle size: which one that is, depends on the lobe, little on the size. */
+static bp_status mix_choose(const struct choice *choice, struct visible_mix *out, bp_error *error)
+{
+	struct deviation best = DEVIATION_WORST;
+	*out = MIXES[0];
+	uint32_t size = MIX_TRIED_AT;
+	while (size > SIZES[0] && !fits(choice, size))
+		size -= 4;
+	bp_status status = BP_OK;
+	for (int n = 0; !status && n < MIX_COUNT; n++) {
 		struct warped warped = {0};
 		struct deviation reached = DEVIATION_WORST;
-		if (bytes_of(SIZES[n], options->spectral) > options->most_bytes)
-			break;
-		status = warped_make(reflectance, &shape, &warped, error);
-		if (!status)
-			status = deviation_measure(reference, evaluate, &warped, &reached, error);
+		status = warped_try(choice, size, MIXES[n], &warped, &reached, error);
+		warped_free(&warped);
+		if (reached.psnr > best.psnr) {
+			best = reached;
+			*out = MIXES[n];
+		}
+	}
+	return status;
+}
+
+/* The smallest of the shapes that reaches the figure and fits; else the best that fits. warped_free *out in any case. */
+static bp_status warped_choose(const struct choice *choice, struct warped *out, struct deviation *deviation, bp_error *error)
+{
+	struct visible_mix mix;
+	bp_status status = mix_choose(choice, &mix, error);
+	*deviation = DEVIATION_WORST;
+	for (int n = 0; !status && n < SIZE_COUNT && !deviation_suffices(deviation) && fits(choice, SIZES[n]); n++) {
+		struct warped warped = {0};
+		struct deviation reached = DEVIATION_WORST;
+		status = warped_try(choice, SIZES[n], mix, &warped, &reached, error);
 		if (!status && reached.psnr > deviation->psnr) {
 			*deviation = reached;
 			warped_free(out);
@@ -99,7 +139,6 @@ static bp_status warped_choose(const struct reflectance *reflectance, const stru
 			warped_free(&warped);
 		}
 	}
-	deviation_reference_free(reference);
 	return status;
 }
 
@@ -109,7 +148,11 @@ bp_status export_bsdf(const struct reflectance *reflectance, const char *name, c
 	struct parts parts = {.version = {1, 0}, .jacobian = 1};
 	struct warped warped = {0};
 	struct tensor tensor[FIELDS_MAX];
-	bp_status status = warped_choose(reflectance, options, &warped, deviation, error);
+	struct choice choice = {.reflectance = reflectance, .options = options};
+	bp_status status = deviation_reference_make(reflectance, &choice.reference, error);
+	if (!status)
+		status = warped_choose(&choice, &warped, deviation, error);
+	deviation_reference_free(choice.reference);
 	const size_t points = (size_t)warped.shape.size * warped.shape.size;
 	if (!status && options->spectral) {
 		const size_t count = points * warped.shape.angles * UPSAMPLING_COUNT;

@@ -12,7 +12,7 @@ static const double SETTLED = 1e-9;
 /* The last node lies at the horizon, where f cos theta is 0: D goes on as if the cosine were this. */
 static const double COSINE_LEAST = 0.01;
 /* D falls nowhere below this (uniform: 1/pi): other directions may reflect where the profile shows nothing. */
-static const double DENSITY_LEAST = 1e-4;
+static const double DENSITY_LEAST = 1e-5;
 
 double normals_u(double theta) { return sqrt(theta / M_PI_2); }
 

@@ -2,8 +2,7 @@
 
 #include <string.h>
 
-static const char MAGIC[12] = "tensor_file";
-enum { ALIGNMENT = 8, BEFORE_FIELDS = sizeof MAGIC + 2 + 4, FIXED = 2 + 2 + 1 + 8 };
+enum { ALIGNMENT = 8, FIXED = 2 + 2 + 1 + 8 };
 
 static uint64_t elements(const struct tensor *field)
 {
@@ -13,13 +12,13 @@ static uint64_t elements(const struct tensor *field)
 	return count;
 }
 
-static uint64_t bytes_of(const struct tensor *field) { return elements(field) * (field->number == TENSOR_NUMBER_U8 ? 1 : 4); }
+static uint64_t bytes_of(const struct tensor *field) { return elements(field) * tensor_type_bytes(field->type); }
 
 static uint64_t aligned(uint64_t at) { return (at + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
 
 static uint64_t header_bytes(const struct tensor *fields, size_t count)
 {
-	uint64_t bytes = BEFORE_FIELDS;
+	uint64_t bytes = TENSOR_HEAD_BYTES;
 	for (size_t n = 0; n < count; n++)
 		bytes += FIXED + strlen(fields[n].name) + 8 * fields[n].rank;
 	return bytes;
@@ -36,7 +35,7 @@ uint64_t tensor_file_bytes(const struct tensor *fields, size_t count)
 static void values_write(const struct tensor *field, struct byte_buffer *out)
 {
 	const uint64_t count = elements(field);
-	if (field->number == TENSOR_NUMBER_U8) {
+	if (field->type == TENSOR_U8) {
 		write_bytes(out, field->values, (size_t)count);
 		return;
 	}
@@ -51,16 +50,16 @@ void tensor_file_write(const struct tensor *fields, size_t count, struct byte_bu
 {
 	const size_t start = out->count;
 	uint64_t at = header_bytes(fields, count);
-	write_bytes(out, MAGIC, sizeof MAGIC);
-	write_u8(out, 1);
-	write_u8(out, 0);
+	write_bytes(out, TENSOR_MAGIC, TENSOR_MAGIC_BYTES);
+	write_u8(out, TENSOR_MAJOR);
+	write_u8(out, TENSOR_MINOR);
 	write_u32(out, (uint32_t)count);
 	for (size_t n = 0; n < count; n++) {
 		at = aligned(at);
 		write_u16(out, (uint16_t)strlen(fields[n].name));
 		write_bytes(out, fields[n].name, strlen(fields[n].name));
 		write_u16(out, (uint16_t)fields[n].rank);
-		write_u8(out, (uint8_t)fields[n].number);
+		write_u8(out, (uint8_t)fields[n].type);
 		write_u64(out, at);
 		for (uint32_t axis = 0; axis < fields[n].rank; axis++)
 			write_u64(out, fields[n].shape[axis]);

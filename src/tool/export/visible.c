@@ -4,11 +4,11 @@
 #include <stdlib.h>
 
 #include "error.h"
-
-static const double SHARE_SOFT = 0.5, SHARE_UNIFORM = 0.2;
+#include "reflectance.h"
+#include "rgl/grid.h"
 
 /* Density over (u, v): a solid angle dm is 2 pi^2 u sin theta du dv. */
-static double density_at(const struct normals *normals, double theta_i, double u, double v)
+static double density_at(const struct normals *normals, struct visible_mix mix, double theta_i, double u, double v)
 {
 	const double theta = normals_theta(u), turn = (2 * v - 1) * M_PI, u_i = normals_u(theta_i);
 	const double facing = sin(theta_i) * sin(theta) * cos(turn) + cos(theta_i) * cos(theta);
@@ -17,7 +17,7 @@ static double density_at(const struct normals *normals, double theta_i, double u
 	const double own = normals_at(normals, normals->density, u) / normals_at(normals, normals->area, u_i);
 	const double soft = normals_at(normals, normals->soft, u) / normals_at(normals, normals->soft_area, u_i);
 	const double uniform = 2 / (M_PI * (1 + cos(theta_i)));
-	const double mixed = (1 - SHARE_SOFT - SHARE_UNIFORM) * own + SHARE_SOFT * soft + SHARE_UNIFORM * uniform;
+	const double mixed = (1 - mix.soft - mix.uniform) * own + mix.soft * soft + mix.uniform * uniform;
 	return mixed * facing * 2 * M_PI * M_PI * u * sin(theta);
 }
 
@@ -44,8 +44,8 @@ static void integrals_fill(struct visible *visible, uint32_t angle)
 		below[y] *= scale;
 }
 
-bp_status visible_make(const struct normals *normals, uint32_t angles, const float *theta_i, uint32_t width, uint32_t height,
-                       struct visible *out, bp_error *error)
+bp_status visible_make(const struct normals *normals, struct visible_mix mix, uint32_t angles, const float *theta_i,
+                       uint32_t width, uint32_t height, struct visible *out, bp_error *error)
 {
 	const size_t points = (size_t)angles * width * height, lines = (size_t)angles * height;
 	const size_t bytes = (points + lines) * sizeof(double) + points * sizeof(float);
@@ -57,7 +57,7 @@ bp_status visible_make(const struct normals *normals, uint32_t angles, const flo
 		float *density = out->density + (size_t)angle * width * height;
 		for (uint32_t y = 0; y < height; y++)
 			for (uint32_t x = 0; x < width; x++)
-				*density++ = (float)density_at(normals, theta_i[angle], x / (width - 1.0), y / (height - 1.0));
+				*density++ = (float)density_at(normals, mix, theta_i[angle], x / (width - 1.0), y / (height - 1.0));
 		integrals_fill(out, angle);
 	}
 	return BP_OK;
@@ -69,13 +69,13 @@ void visible_free(struct visible *visible)
 	*visible = (struct visible){0};
 }
 
-/* The cell of `count` nodes in which a coordinate of [0, 1] lies, and how far into it. */
-static uint32_t cell_of(double at, uint32_t count, double *into)
+void visible_mirror(const double wi[3], const double at[2], double wo[3])
 {
-	const double place = fmin(fmax(at, 0), 1) * (count - 1);
-	const uint32_t cell = place >= count - 1 ? count - 2 : (uint32_t)place;
-	*into = place - cell;
-	return cell;
+	double m[3];
+	direction_at(normals_theta(at[0]), (2 * at[1] - 1) * M_PI, m);
+	const double facing = wi[0] * m[0] + wi[1] * m[1] + wi[2] * m[2];
+	for (int axis = 0; axis < 3; axis++)
+		wo[axis] = 2 * facing * m[axis] - wi[axis];
 }
 
 /* The integral from 0 to t of a line that goes from a to b within a unit. */
@@ -105,7 +105,7 @@ void visible_warp(const struct visible *visible, uint32_t angle, double weight, 
 {
 	const size_t width = visible->width, points = width * visible->height;
 	double fx, fy;
-	const uint32_t x = cell_of(at[0], visible->width, &fx), y = cell_of(at[1], visible->height, &fy);
+	const size_t x = grid_node(at[0], width, &fx), y = grid_node(at[1], visible->height, &fy);
 	const float *corner = visible->density + angle * points + y * width + x;
 	const double left = between(mixed_density(corner, points, weight), mixed_density(corner + width, points, weight), fy);
 	const double right =

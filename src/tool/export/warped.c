@@ -61,12 +61,9 @@ static void nodes_place(const struct warped *warped, uint32_t angle, struct pair
 	wi[2] = fmax(wi[2], COSINE_LEAST);
 	for (uint32_t n = 0; n < size * size; n++) {
 		const double at[2] = {n % size / (size - 1.0), n / size / (size - 1.0)};
-		double u[2], m[3], wo[3];
+		double u[2], wo[3];
 		visible_unwarp(&warped->visible, angle, at, u);
-		direction_at(normals_theta(u[0]), (2 * u[1] - 1) * M_PI, m);
-		const double facing = wi[0] * m[0] + wi[1] * m[1] + wi[2] * m[2];
-		for (int axis = 0; axis < 3; axis++)
-			wo[axis] = 2 * facing * m[axis] - wi[axis];
+		visible_mirror(wi, u, wo);
 		pairs_set(pairs, n, wi, wo);
 		factor[n] = fmax(wo[2], 0) * 4 * area / normals_at(normals, normals->density, u[0]);
 	}
@@ -103,24 +100,31 @@ static void horizon_cross(uint32_t size, const double *factor, float *plane)
 static bool slice_fill(struct warped *warped, uint32_t angle, const struct pairs *pairs, const double *factor)
 {
 	const size_t points = (size_t)warped->shape.size * warped->shape.size;
-	float *luminance = warped->luminance + angle * points, brightest = 0;
 	bool whole = true;
-	for (size_t n = 0; n < points; n++) {
-		double sum = 0;
-		for (size_t c = 0; c < 3; c++) {
+	for (size_t c = 0; c < 3; c++) {
+		float *plane = warped->rgb + (angle * 3 + c) * points;
+		for (size_t n = 0; n < points; n++) {
 			const double value = pairs->rgb[c][n] * factor[n];
 			whole &= value < FLT_MAX / 4;
-			warped->rgb[(angle * 3 + c) * points + n] = (float)fmin(value, FLT_MAX);
-			sum += value / 3;
+			plane[n] = (float)fmin(value, FLT_MAX);
 		}
-		luminance[n] = (float)fmin(sum, FLT_MAX);
+		horizon_cross(warped->shape.size, factor, plane);
+	}
+	return whole;
+}
+
+/* The mean of the channels, by which readers draw. */
+static void luminance_fill(struct warped *warped, uint32_t angle)
+{
+	const size_t points = (size_t)warped->shape.size * warped->shape.size;
+	float *luminance = warped->luminance + angle * points, brightest = 0;
+	const float *rgb = warped->rgb + angle * 3 * points;
+	for (size_t n = 0; n < points; n++) {
+		luminance[n] = fmaxf((rgb[n] + rgb[points + n] + rgb[2 * points + n]) / 3, 0);
 		brightest = fmaxf(brightest, luminance[n]);
 	}
 	for (size_t n = 0; brightest < LUMINANCE_LEAST && n < points; n++)
 		luminance[n] = 1;
-	for (size_t c = 0; c < 3; c++)
-		horizon_cross(warped->shape.size, factor, warped->rgb + (angle * 3 + c) * points);
-	return whole;
 }
 
 static bp_status slices_make(const struct reflectance *reflectance, struct warped *warped, bp_error *error)
@@ -156,8 +160,15 @@ bp_status warped_make(const struct reflectance *reflectance, const struct warped
 	if (!status)
 		status = normals_make(WARPED_NORMALS, profile, &out->normals, error);
 	if (!status)
-		status = visible_make(&out->normals, shape->angles, out->theta_i, shape->width, shape->height, &out->visible, error);
-	return status ? status : slices_make(reflectance, out, error);
+		status = visible_make(&out->normals, shape->mix, shape->angles, out->theta_i, shape->width, shape->height, &out->visible,
+		                      error);
+	if (!status)
+		status = slices_make(reflectance, out, error);
+	if (!status)
+		status = warped_settle(reflectance, out, error);
+	for (uint32_t angle = 0; !status && angle < shape->angles; angle++)
+		luminance_fill(out, angle);
+	return status;
 }
 
 void warped_free(struct warped *warped)

@@ -19,6 +19,7 @@ struct warped_shape {
 	uint32_t angles;        /* theta_i, from 0 to pi/2 */
 	uint32_t width, height; /* u_m and v_m of vndf */
 	uint32_t size;          /* s and t of luminance and rgb: size x size */
+	struct visible_mix mix; /* where the samples lie */
 };
 enum { WARPED_NORMALS = 181 }; /* u of ndf and sigma: those of MERL's lattice, its cells' edges and centres */
 
@@ -31,9 +32,18 @@ struct warped {
 	float *rgb;       /* [angles][3][size][size]; below 0 beyond the horizon, so that f cos theta_o passes through 0 on it */
 };
 
-/* Evaluates the material at all nodes. warped_free in any case. BP_ERROR_BAD_INPUT where a value is beyond what a float holds. */
+/*
+ * Evaluates the material at all nodes, and settles these (warped_settle). warped_free in any case. BP_ERROR_BAD_INPUT where a value is beyond what a
+ * float holds.
+ */
 bp_status warped_make(const struct reflectance *reflectance, const struct warped_shape *shape, struct warped *out,
                       bp_error *error);
+/*
+ * A straight line between two points of a curve lies on one side of it; what readers interpolate is too bright where f is hollow. Adds to each sample
+ * the mean of what is missing around it, at four points of each cell between samples, four times over, weighted as the reader's interpolation weighs the sample:
+ * for a function of second degree that leaves a mean of 0.
+ */
+bp_status warped_settle(const struct reflectance *reflectance, struct warped *warped, bp_error *error);
 void warped_free(struct warped *warped); /* a zeroed struct is allowed */
 
 /* f cos theta_o as a reader of the file has it, in 1/sr; unit vectors; 0 where either is on or below the horizon. */

@@ -2,15 +2,7 @@
 
 #include <math.h>
 
-/* Bilinear in a grid of size x size. */
-static double grid_at(const float *grid, uint32_t size, const double at[2])
-{
-	const double px = at[0] * (size - 1), py = at[1] * (size - 1);
-	const uint32_t x = px >= size - 1 ? size - 2 : (uint32_t)px, y = py >= size - 1 ? size - 2 : (uint32_t)py;
-	const double fx = px - x, fy = py - y;
-	const float *corner = grid + (size_t)y * size + x;
-	return (1 - fy) * ((1 - fx) * corner[0] + fx * corner[1]) + fy * ((1 - fx) * corner[size] + fx * corner[size + 1]);
-}
+#include "rgl/grid.h"
 
 /* The slice at or before theta_i, and how far it is to the next. */
 static uint32_t angle_find(const struct warped *warped, double theta_i, double *weight)
@@ -41,6 +33,7 @@ void warped_evaluate(const struct warped *warped, const float wi[3], const float
 	const size_t points = (size_t)size * size;
 	for (size_t c = 0; c < 3; c++) {
 		const float *grid = warped->rgb + (angle * 3 + c) * points;
-		rgb[c] = factor * ((1 - weight) * grid_at(grid, size, at) + weight * grid_at(grid + 3 * points, size, at));
+		rgb[c] = factor * ((1 - weight) * grid_bilinear(grid, size, size, at[0], at[1]) +
+		                   weight * grid_bilinear(grid + 3 * points, size, size, at[0], at[1]));
 	}
 }

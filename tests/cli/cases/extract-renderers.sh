@@ -19,7 +19,7 @@ code brdfpack extract --format bsdf --size 100k -C x m.bpk alpha
 code brdfpack extract --format bsdf --size 100k --force -C x m.bpk alpha
 [ "$(stat -c %s x/alpha.bsdf)" -le 100000 ] && echo "at most 100 kB"
 code brdfpack extract --format bsdf --size 20k -C x m.bpk
-code brdfpack extract --format bsdf --spectral --size 100k -C x m.bpk
+code brdfpack extract --format bsdf --spectral --size 120k -C x m.bpk
 code brdfpack extract --format mbsdf --size 98303 -C x m.bpk
 code brdfpack extract --format bsdf --size 2G -C x m.bpk
 code brdfpack extract --format bsfd m.bpk

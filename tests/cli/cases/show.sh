@@ -22,3 +22,7 @@ cmp e.svg f.svg && cmp b.svg <(brdfpack show -o g.svg alpha.binary; cat g.svg) &
 mkdir other
 cp "$FIXTURES/beta.binary" other/alpha.binary
 code brdfpack show --measured other -o h.svg out.bpk alpha
+# a folder's file of the RGL database is found as well
+python3 "$TESTS/tensor_files.py" .
+build -q -o rough.bpk rough.bsdf
+brdfpack show --measured . -o h.svg rough.bpk rough && brdfpack show --measured rough.bsdf -o i.svg rough.bpk rough && cmp h.svg i.svg && echo "found"
