@@ -20,7 +20,7 @@ import tempfile
 import bench_head
 from bench_head import TOOL, run
 
-GOAL = 10 # times reading the files once, by two workers
+GOAL, COLD_GOAL = 20, 5  # times reading the files once, by two workers: from the page cache, and from storage
 
 
 def drop_from_cache(files):
@@ -96,7 +96,7 @@ def main():
         print("# build -j2 of the %d files takes %.1f times as long as reading them once with cat; the goal is at most %d" %
               (count, ratio_of(results["build -j2"], results["cat"]), GOAL))
         if options.cold:
-            print("# with the files not in the page cache %.1f times" % ratio_of(results["cold build -j2"], results["cold cat"]))
+            print("# with the files not in the page cache %.1f times; the goal is at most %d" % (ratio_of(results["cold build -j2"], results["cold cat"]), COLD_GOAL))
         print("# -j2 is %.2f times as fast as -j1; %d bytes per material" % (scaling, os.path.getsize(archive) / count))
     finally:
         shutil.rmtree(scratch)
