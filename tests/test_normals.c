@@ -2,6 +2,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <math.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -94,7 +95,7 @@ static void a_material_without_light_has_uniform_normals(void **state)
 	normals_free(&normals);
 }
 
-static void visible_of(double alpha, uint32_t angles, const float *theta_i, uint32_t width, uint32_t height, struct visible *out)
+static void visible_of(double alpha, uint32_t angles, const float *theta_i, uint32_t width, uint32_t height, struct warp *out)
 {
 	double profile[NODES];
 	struct normals normals;
@@ -110,7 +111,7 @@ static void every_angle_has_the_mass_one(void **state)
 {
 	(void)state;
 	enum { WIDTH = 23, HEIGHT = 17 };
-	struct visible visible;
+	struct warp visible;
 	visible_of(0.2, 4, ANGLES, WIDTH, HEIGHT, &visible);
 	for (size_t angle = 0; angle < 4; angle++) {
 		double mass = 0;
@@ -120,25 +121,41 @@ static void every_angle_has_the_mass_one(void **state)
 				mass += ((double)corner[0] + corner[1] + corner[WIDTH] + corner[WIDTH + 1]) / 4 / ((WIDTH - 1) * (HEIGHT - 1));
 			}
 		assert_true(fabs(mass - 1) < 1e-6);
-		assert_true(fabs(visible.below[angle * HEIGHT + HEIGHT - 1] - 1) < 1e-12);
+		assert_true(fabs(visible.along_column[angle * HEIGHT + HEIGHT - 1] - 1) < 1e-12);
 	}
-	visible_free(&visible);
+	warp_free(&visible);
 }
 
 static void warping_back_leads_home(void **state)
 {
 	(void)state;
-	struct visible visible;
+	struct warp visible;
 	visible_of(0.05, 4, ANGLES, 40, 31, &visible);
 	for (uint32_t angle = 0; angle < 4; angle++)
 		for (int n = 0; n < 400; n++) {
 			const double at[2] = {(n % 20 + 0.5) / 20, (n / 20 + 0.5) / 20};
 			double u[2], back[2];
-			visible_unwarp(&visible, angle, at, u);
-			visible_warp(&visible, angle, 0, u, back);
+			warp_forward(&visible, angle, at, u);
+			warp_inverse(&visible, (struct warp_place){angle, 0}, u, back);
 			assert_true(fabs(back[0] - at[0]) < 1e-6 && fabs(back[1] - at[1]) < 1e-6);
 		}
-	visible_free(&visible);
+	warp_free(&visible);
+}
+
+static void an_angle_without_a_density_is_refused(void **state)
+{
+	(void)state;
+	const double profile[NODES] = {0};
+	const float angles[] = {0, NAN};
+	struct normals normals;
+	struct warp visible;
+	bp_error error;
+	assert_int_equal(normals_make(NODES, profile, &normals, NULL), BP_OK);
+	assert_int_equal(visible_make(&normals, (struct visible_mix){0.5, 0.2}, 2, angles, 8, 8, &visible, &error),
+	                 BP_ERROR_BAD_INPUT);
+	assert_non_null(strstr(error.message, "theta_i = nan"));
+	warp_free(&visible);
+	normals_free(&normals);
 }
 
 /* Between two angles: t is the mass of the mixed density below v, by brute force. */
@@ -146,7 +163,7 @@ static void a_mixture_warps_by_its_own_mass(void **state)
 {
 	(void)state;
 	enum { WIDTH = 12, HEIGHT = 9, FINE = 400 };
-	struct visible visible;
+	struct warp visible;
 	visible_of(0.4, 4, ANGLES, WIDTH, HEIGHT, &visible);
 	const double weight = 0.3, at[2] = {0.47, 0.62};
 	double below = 0, left = 0, line = 0;
@@ -171,10 +188,10 @@ static void a_mixture_warps_by_its_own_mass(void **state)
 			left += b == 0 && u < at[0] ? value[1] : 0;
 		}
 	double got[2];
-	visible_warp(&visible, 1, weight, at, got);
+	warp_inverse(&visible, (struct warp_place){1, weight}, at, got);
 	assert_true(fabs(got[1] - below) < 1e-3);
 	assert_true(fabs(got[0] - left / line) < 5e-3);
-	visible_free(&visible);
+	warp_free(&visible);
 }
 
 int main(void)
@@ -185,6 +202,7 @@ int main(void)
 		cmocka_unit_test(a_material_without_light_has_uniform_normals),
 		cmocka_unit_test(every_angle_has_the_mass_one),
 		cmocka_unit_test(warping_back_leads_home),
+		cmocka_unit_test(an_angle_without_a_density_is_refused),
 		cmocka_unit_test(a_mixture_warps_by_its_own_mass),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

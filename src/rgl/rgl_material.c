@@ -197,8 +197,8 @@ static bp_status vndf_read(const uint8_t *file, const struct tensor_field *field
 	const size_t slices = (size_t)field->shape[1], nodes = (size_t)(field->shape[2] * field->shape[3]);
 	double *values = malloc(nodes * sizeof *values);
 	bp_status status = BP_OK;
-	if (!warp_alloc(warp, slices, (size_t)field->shape[2], (size_t)field->shape[3]) || !values)
-		status = error_memory(error, (2 * slices + 2) * nodes * sizeof(float));
+	if (!warp_alloc(warp, slices, (size_t)field->shape[2], (size_t)field->shape[3], 1, 1) || !values)
+		status = error_memory(error, (3 * slices + 2) * nodes * sizeof(float));
 	for (size_t slice = 0; slice < slices && !status; slice++) {
 		size_t at = 0;
 		tensor_floats(file, field, slice * nodes, nodes, values);
@@ -209,6 +209,8 @@ static bp_status vndf_read(const uint8_t *file, const struct tensor_field *field
 			status = error_set(error, BP_ERROR_BAD_INPUT, field->offset, "field %s: the density at theta_i number %zu is %s",
 			                   field->name, slice, "0 everywhere, or beyond all bounds");
 	}
+	if (!status)
+		warp_round(warp);
 	free(values);
 	return status;
 }

@@ -29,10 +29,10 @@ static struct warp_place place_of(const struct rgl_material *material, double th
 }
 
 /* Adds one angle's samples at s, bilinear. */
-static void samples_add(const struct rgl_material *material, size_t angle, double weight, double sx, double sy, double sum[4])
+static void samples_add(const struct rgl_material *material, size_t angle, double weight, const double s[2], double sum[4])
 {
 	double fx, fy;
-	const size_t ix = grid_node(sx, material->width, &fx), iy = grid_node(sy, material->height, &fy);
+	const size_t ix = grid_node(s[0], material->width, &fx), iy = grid_node(s[1], material->height, &fy);
 	const float *v = material->samples + 4 * ((angle * material->height + iy) * material->width + ix);
 	const float *below = v + 4 * material->width;
 	const double a = weight * (1 - fy) * (1 - fx), b = weight * (1 - fy) * fx, c = weight * fy * (1 - fx), d = weight * fy * fx;
@@ -52,17 +52,17 @@ void rgl_evaluate(const struct rgl_material *material, double theta_i, double ph
                   struct rgl_value *out)
 {
 	const struct warp_place place = place_of(material, theta_i);
-	const double x = elevation_coordinate(theta_m), y = azimuth_coordinate(-phi_i);
-	double sx, sy, sum[4] = {0}, factor = 1 / cos_o;
+	const double at[2] = {elevation_coordinate(theta_m), azimuth_coordinate(-phi_i)};
+	double s[2], sum[4] = {0}, factor = 1 / cos_o;
 
-	warp_invert(&material->vndf, place, x, y, &sx, &sy);
-	samples_add(material, place.slice, 1 - place.next, sx, sy, sum);
+	warp_inverse(&material->vndf, place, at, s);
+	samples_add(material, place.slice, 1 - place.next, s, sum);
 	if (place.next > 0)
-		samples_add(material, place.slice + 1, place.next, sx, sy, sum);
+		samples_add(material, place.slice + 1, place.next, s, sum);
 	out->data = sum[3];
 	if (material->jacobian) {
 		const double area = 4 * grid_at(&material->sigma, elevation_coordinate(theta_i), azimuth_coordinate(phi_i));
-		factor *= area > 0 ? grid_at(&material->ndf, x, y) / area : 0;
+		factor *= area > 0 ? grid_at(&material->ndf, at[0], at[1]) / area : 0;
 		if (!(area > 0))
 			out->data = 0;
 	}

@@ -62,7 +62,7 @@ static void nodes_place(const struct warped *warped, uint32_t angle, struct pair
 	for (uint32_t n = 0; n < size * size; n++) {
 		const double at[2] = {n % size / (size - 1.0), n / size / (size - 1.0)};
 		double u[2], wo[3];
-		visible_unwarp(&warped->visible, angle, at, u);
+		warp_forward(&warped->visible, angle, at, u);
 		visible_mirror(wi, u, wo);
 		pairs_set(pairs, n, wi, wo);
 		factor[n] = fmax(wo[2], 0) * 4 * area / normals_at(normals, normals->density, u[0]);
@@ -174,7 +174,7 @@ bp_status warped_make(const struct reflectance *reflectance, const struct warped
 void warped_free(struct warped *warped)
 {
 	normals_free(&warped->normals);
-	visible_free(&warped->visible);
+	warp_free(&warped->visible);
 	free(warped->theta_i);
 	*warped = (struct warped){0};
 }

@@ -2,7 +2,7 @@
  * warped.h: a material as the fields of a tensor file of the RGL database (Dupuy and Jakob 2018), isotropic, in RGB.
  *
  * With u = sqrt(2 theta/pi), a half vector m at (u_m, v_m) is warped to (s, t) by the density of visible normals at theta_i
- * (visible.h), and
+ * (visible.h, rgl/warp.h), and
  *
  *     f cos theta_o = rgb(theta_i; s, t) ndf(u_m)/(4 sigma(u_i))
  *
@@ -26,10 +26,10 @@ enum { WARPED_NORMALS = 181 }; /* u of ndf and sigma: those of MERL's lattice, i
 struct warped {
 	struct warped_shape shape;
 	struct normals normals;
-	struct visible visible;
-	float *theta_i;   /* [angles], radians */
-	float *luminance; /* [angles][size][size]: the mean of rgb, not below 0 */
-	float *rgb;       /* [angles][3][size][size]; below 0 beyond the horizon, so that f cos theta_o passes through 0 on it */
+	struct warp visible; /* [angles]: densities of mass 1 over the unit square */
+	float *theta_i;      /* [angles], radians */
+	float *luminance;    /* [angles][size][size]: the mean of rgb, not below 0 */
+	float *rgb;          /* [angles][3][size][size]; below 0 beyond the horizon, so that f cos theta_o passes through 0 on it */
 };
 
 /*

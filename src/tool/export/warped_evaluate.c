@@ -27,7 +27,7 @@ void warped_evaluate(const struct warped *warped, const float wi[3], const float
 	const double u[2] = {normals_u(theta_m), turn - floor(turn)};
 	double at[2], weight;
 	const uint32_t angle = angle_find(warped, theta_i, &weight), size = warped->shape.size;
-	visible_warp(&warped->visible, angle, weight, u, at);
+	warp_inverse(&warped->visible, (struct warp_place){angle, weight}, u, at);
 	const double area = normals_at(normals, normals->area, normals_u(theta_i));
 	const double factor = normals_at(normals, normals->density, u[0]) / (4 * area);
 	const size_t points = (size_t)size * size;

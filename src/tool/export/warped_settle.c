@@ -59,11 +59,11 @@ static void probes_place(const struct warped *warped, uint32_t angle, uint32_t s
 	for (size_t n = side * half; n < (side + 1) * half; n++) {
 		const uint32_t cell = (uint32_t)(n % half / 2), part = n % 2;
 		const double at[2] = {(cell % cells + GAUSS[part]) / cells, (cell / cells + GAUSS[part ^ side]) / cells};
-		visible_unwarp(&warped->visible, angle + side, at, u);
+		warp_forward(&warped->visible, angle + side, at, u);
 		visible_mirror(wi, u, wo);
 		pairs_set(&probes->pairs, n, wi, wo);
 		probes->factor[n] = fmax(wo[2], 0) * 4 * area / normals_at(normals, normals->density, u[0]);
-		visible_warp(&warped->visible, angle, GAUSS[side], u, probes->at[n]);
+		warp_inverse(&warped->visible, (struct warp_place){angle, GAUSS[side]}, u, probes->at[n]);
 	}
 }
 
