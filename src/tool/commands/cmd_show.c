@@ -54,19 +54,19 @@ static bool angles_take(const struct command *command, const struct option_rule 
 	}
 }
 
-/* The measured file of a material in a folder: NAME.binary, or NAME.bsdf where that is what there is. malloc'ed; NULL: no memory. */
-static char *measured_path(const char *folder, const char *name)
+/* The measured file of a material in a folder: NAME.binary, or NAME.bsdf where that is what there is. malloc'ed. */
+static bp_status measured_path(const char *folder, const char *name, char **out, bp_error *error)
 {
-	char *binary = NULL, *tensor = NULL;
-	if (asprintf(&binary, "%s/%s.binary", folder, name) < 0)
-		return NULL;
-	if (asprintf(&tensor, "%s/%s.bsdf", folder, name) < 0) {
-		free(binary);
-		return NULL;
+	static const char *const SUFFIXES[] = {"binary", "bsdf"};
+	for (size_t n = 0; n < sizeof SUFFIXES / sizeof *SUFFIXES; n++) {
+		if (asprintf(out, "%s/%s.%s", folder, name, SUFFIXES[n]) < 0)
+			return error_memory(error, strlen(folder) + strlen(name));
+		if (access(*out, F_OK) == 0)
+			return BP_OK;
+		free(*out);
 	}
-	const bool other = access(binary, F_OK) != 0 && access(tensor, F_OK) == 0;
-	free(other ? binary : tensor);
-	return other ? tensor : binary;
+	return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s: there is neither %s.binary nor %s.bsdf in it", folder, name,
+	                 name);
 }
 
 /* The measured file that belongs to an archived material: the path itself, or that of its name in that folder. Another one than was packed is told. */
@@ -77,11 +77,12 @@ static bp_status reference_read(const char *path, const struct record_head *head
 	struct stat status;
 	char *file = NULL;
 	bp_error reason;
-	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && !(file = measured_path(path, head->name)))
-		return error_memory(error, 512);
+	bp_status result = BP_OK;
+	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && (result = measured_path(path, head->name, &file, error)) != BP_OK)
+		return result;
 	sha256_start(&sha);
-	bp_status result = lattice_read_path(
-		file ? file : path, &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, out, &reason);
+	result = lattice_read_path(file ? file : path,
+	                           &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, out, &reason);
 	sha256_finish(&sha, digest);
 	if (result == BP_OK && memcmp(digest, head->source.sha256, sizeof digest) != 0)
 		report_warning(file ? file : path, head->name, "not the file that was packed: its SHA-256 is another");

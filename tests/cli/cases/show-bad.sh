@@ -12,3 +12,6 @@ code brdfpack show -o missing/a.svg out.bpk alpha
 code brdfpack show -o a.svg out.bpk gamma
 code brdfpack show -o a.svg "$FIXTURES/unmeasured.binary"
 ls
+# a folder with no file of that name: both names that were looked for
+mkdir empty
+code brdfpack show --measured empty -o a.svg out.bpk alpha
