@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Tables of format-spec/RENDERERS.md and RESULTS.md, made anew: renderers_table.py [--tool TOOL] [--rgl FOLDER] [--merl FOLDER NAME...]
+"""Tables of format-spec/RENDERERS.md and RESULTS.md, made anew: renderers_table.py [--tool TOOL] [--rgl FOLDER [TABLES]] [--merl FOLDER NAME...]
 
 Prints Markdown. First, of the demo set, or with --merl of these materials of a folder of MERL files: each packed in 60,400 bytes, extracted as
 `.bsdf`, and that in Mitsuba 3's own `measured` (tests/mitsuba_files.py, in the virtual environment of scripts/mitsuba_venv.sh with the package): a sphere
 under the point lights, albedo at 0.1, 0.8 and 1.3 radians, Mitsuba's chi-square test at 0.02, 0.7 and 1.2; and packed again from the `.bsdf`,
-against the MERL file. With --rgl instead: published files against their own tables' records, and against Mitsuba (tests/mitsuba_measured.py).
+against the MERL file. With --rgl instead: spheres of the records of published files, and, where there is a folder with MERL files of the
+same names made from them by another program, of these files' records; and the former against Mitsuba (tests/mitsuba_measured.py), at 60,400 bytes and at 400,000.
 """
 import argparse
 import glob
@@ -41,8 +42,9 @@ def python_with_mitsuba(scratch):
     run(os.path.join(ROOT, "scripts/mitsuba_venv.sh"))
     venv = os.path.join(ROOT, "build/mitsuba-venv/bin")
     run("cp", "-r", os.path.join(ROOT, "Makefile"), os.path.join(ROOT, "src"), scratch)
-    run(f"{venv}/pip", "--disable-pip-version-check", "-q", "install", "cffi")
-    run(f"{venv}/pip", "--disable-pip-version-check", "-q", "install", "--force-reinstall", "--no-deps", f"{scratch}/src/python")
+    pip = f"{venv}/python", "-m", "pip", "--disable-pip-version-check", "-q", "install"
+    run(*pip, "cffi")
+    run(*pip, "--force-reinstall", "--no-deps", f"{scratch}/src/python")
     newest = sorted(glob.glob("/usr/lib/*/libLLVM-1[5-9].so") + glob.glob("/usr/lib/*/libLLVM-[2-9]?.so"))
     if newest:
         os.environ["DRJIT_LIBLLVM_PATH"] = newest[-1]
@@ -67,28 +69,34 @@ def exported(tool, python, scratch, measured, names):
     print(f"\nAnd back: {sum(back[name][0] for name in names) / len(names):.1f} dB in the mean, {min(back[name][0] for name in names):.1f} at worst.")
 
 
-def published(tool, python, scratch, folder):
-    archive = os.path.join(scratch, "rgl.bpk")
-    run(tool, "build", "-q", "-o", archive, *sorted(glob.glob(os.path.join(folder, "*_rgb.bsdf"))))
-    psnr = compared(tool, archive, folder, ["key", "env"])
-    print("| genuine (RGL) | from .bsdf: key / env |\n|---|---|")
-    for name, (key, env) in sorted(psnr.items()):
-        print(f"| {name} | {key:.2f} / {env:.2f} |")
-    key, env = (sum(both[n] for both in psnr.values()) / len(psnr) for n in range(2))
-    print(f"| **mean** | {key:.2f} / {env:.2f} |\n", flush=True)
-    print(run(python, os.path.join(ROOT, "tests/mitsuba_measured.py"), tool, folder, scratch))
+def published(tool, python, scratch, folder, tables=None):
+    columns = ["from .bsdf"] + ["from the table"] * bool(tables)
+    psnr = []
+    for n, measured in enumerate((folder, tables)[:len(columns)]):
+        archive = os.path.join(scratch, f"rgl{n}.bpk")
+        run(tool, "build", "-q", "-o", archive, *sorted(glob.glob(os.path.join(measured, "*_rgb." + ("binary" if n else "bsdf")))))
+        psnr.append(compared(tool, archive, measured, ["key", "env"]))
+    told = run(python, os.path.join(ROOT, "tests/mitsuba_measured.py"), tool, folder, scratch)
+    columns += ["one direction", "mean of both", "directions apart", "400,000 bytes"]
+    print("| genuine (RGL) |", " | ".join(columns), "|\n|" + "---|" * (1 + len(columns)))
+    for name in sorted(psnr[0]):
+        numbers = [float(x) for x in re.findall(r"([\d.]+)%", re.search(rf"^{name} .*$", told, re.M)[0])]
+        apart = [f"{median:.2f} % / {far:.1f} %" for median, far in zip(numbers[::2], numbers[1::2])]
+        print(f"| {name.removesuffix('_rgb')} |", " | ".join([f"{p[name][0]:.2f} / {p[name][1]:.2f}" for p in psnr] + apart), "|")
+    means = [" / ".join(f"{sum(both[n] for both in p.values()) / len(p):.2f}" for n in range(2)) for p in psnr]
+    print("| **mean** |", " | ".join(means), "|" + " |" * 4)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tool", default=os.path.join(ROOT, "build/brdfpack"))
-    parser.add_argument("--rgl", metavar="FOLDER")
+    parser.add_argument("--rgl", nargs="+", metavar=("FOLDER", "TABLES"))
     parser.add_argument("--merl", nargs="+", metavar=("FOLDER", "NAME"))
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         python = python_with_mitsuba(scratch)
         if options.rgl:
-            published(options.tool, python, scratch, options.rgl)
+            published(options.tool, python, scratch, *options.rgl[:2])
         elif options.merl:
             exported(options.tool, python, scratch, options.merl[0], options.merl[1:])
         else:
