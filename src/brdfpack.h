@@ -361,7 +361,8 @@ typedef struct bp_load_options {
 	   malloc */
 	const bp_allocator *allocator;
 	/* refuse, with BP_ERROR_LIMIT, a material that may need more while it is loaded: 24 bytes per cell and 1 MB, 36 MB for MERL's
-	   lattice. 0: twice that lattice's need, 72 MB; an archive's few bytes may ask for gigabytes */
+	   lattice; more where phi_d has few cells (of 4: 59 bytes per cell) or hundreds (of P: up to P^3/3 bytes more). 0: twice
+	   MERL's need, 72 MB; an archive's few bytes may ask for gigabytes */
 	size_t max_memory_bytes;
 } bp_load_options;
 
@@ -381,7 +382,8 @@ typedef struct bp_loaded {
 /*
  * Loads material `index` of the archive; options NULL: as if zeroed. The caller frees *out. Several threads
  * may load from one archive at once. The bits do not depend on the caller's rounding mode or flushing of denormals. Beside the
- * result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a MERL lattice; more only for records of megabytes.
+ * result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a MERL lattice; more only for records of
+ * megabytes, and for lattices of few or of hundreds of cells along phi_d (max_memory_bytes).
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an unknown form or colour, sampling neither 0 nor 1, max_log_rmse negative
  * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
  */

@@ -67,6 +67,10 @@ static void numbers_of_the_fields_are_refused_beyond_their_limits(void **state)
 		{60, 0, NAN, "a centre is"},
 		{8, 0, NAN, "a base is"},
 		{56, 1, NAN, "the step"},
+		{76, 0x1p-30f, 0x1.fffffep-31f, "rows are cut at"},
+		{76, 0x1.fffffep-1f, 1, "rows are cut at"},
+		{76, 0.5f, NAN, "rows are cut at"},
+		{76, 0.5f, -0.5f, "rows are cut at"},
 	};
 	static const double UNITS[2][2] = {{SPECTRAL_UNIT_LEAST, SPECTRAL_UNIT_LEAST / 2},
 	                                   {SPECTRAL_UNIT_MOST, SPECTRAL_UNIT_MOST * 2}};

@@ -106,8 +106,18 @@ static bp_status material_fill(const bp_archive *archive, const struct index_ent
 	return status;
 }
 
-/* What loading may need: 17 bytes per cell while the model is expanded, 6 of the result, and a few tables. */
-static double need_of(struct lattice_dims dims) { return 24.0 * (double)lattice_cells(dims) + 1e6; }
+/*
+ * What loading may need: 17 bytes per cell while the model is expanded, 12 of them in the three fields, 6 of the result, and a few
+ * tables. Fields lie in blocks of lanes (spectrum_rows.c), which are more than the cells where phi_d has few; and the cosines of a row's
+ * span of n cells take 2 n^2 bytes (spans.c), those of all spans P^3/3, which counts where it has hundreds.
+ */
+static double need_of(struct lattice_dims dims)
+{
+	const double rows = (double)dims.theta_h * dims.theta_d, p = dims.phi_d;
+	const uint32_t even = ((dims.phi_d + 1) / 2 + 7) / 8, odd = (dims.phi_d / 2 + 7) / 8, lanes = (even + odd + 1) / 2 * 16;
+	const double cosines = p * p * fmin(p / 3, 2 * rows);
+	return fmax(24 * rows * p, rows * (12 * lanes + 9 * p + 24) + cosines) + 1e6;
+}
 
 static bp_status need_check(const struct record_head *head, size_t most, bp_error *error)
 {

@@ -143,7 +143,7 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 	const uint32_t version = section->entry->version, before_weights = FIELDS_BYTES + (version == FIELDS_VERSION_GRADED ? 4 : 0);
 	if (section->entry->bytes < before_weights)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %u and weights",
-		                 section->entry->bytes, FIELDS_BYTES);
+		                 section->entry->bytes, before_weights);
 	model->weights.graded = version == FIELDS_VERSION_GRADED;
 	model->unit = read_f64(&in);
 	for (int c = 0; c < 3; c++)

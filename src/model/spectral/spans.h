@@ -22,7 +22,7 @@
 #define SPAN_MARGIN 0x1p-30f /* the least limit: so that no rounding decides where a corner lies on the horizon itself */
 void spans_find(struct lattice_dims dims, float limit, uint16_t *span);
 
-/* The highest limit that leaves every valid cell in its row: instruments do not see what grazes. SPAN_MARGIN to below 1. */
+/* A part in 65,536 below the highest limit that leaves every valid cell in its row: instruments do not see what grazes. SPAN_MARGIN to below 1. */
 float spans_limit(const struct lattice *lattice);
 
 /* The cosines of rows of every span in use. */

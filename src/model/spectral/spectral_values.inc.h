@@ -81,7 +81,7 @@ static void KERNEL(spectral_moments)(const float *const x[3], size_t n, double s
 
 /*
  * n cells of one channel. The limits are those of the numbers as integers, which is the same for positive ones and takes half the
- * instructions; negative ones become 0. No field is NaN: fields are sums of finite coefficients within 2^64 each.
+ * instructions; negative ones become 0. No field is NaN: coefficients are within 2^98, and the sums of them far within the range of float.
  */
 static inline
 	__attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,

@@ -8,6 +8,7 @@
 #include "spectral_kernels.h"
 
 enum { EDGE = SPECTRAL_WEIGHTS_EDGE, LEAST_CELLS = 20, PER_OCTAVE = 8, BINS = 128 * PER_OCTAVE };
+_Static_assert(LEAST_CELLS >= EDGE, "every region has cells");
 
 /* Figures that were found by trial: VARIANTS.md, "What errors are worth". */
 static const double PICTURE = 0.95;  /* share of the picture in an error's worth; the rest is the error of the logarithm itself */

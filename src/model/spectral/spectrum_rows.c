@@ -1,5 +1,6 @@
 #include "spectrum_rows.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +10,7 @@
 #include "spectral_kernels.h"
 
 enum { STEP = 8 }; /* lanes of a kind are a multiple of it */
+_Static_assert((int)SPAN_ROWS >= (int)SPECTRUM_BLOCK && SPECTRUM_BLOCK % STEP == 0, "rows asked for at once have room");
 
 /*
  * A field after the wavelets: planes of the rows that are wanted, [plane][row][SPECTRUM_BLOCK], their lanes first of even harmonics, then
@@ -161,7 +163,8 @@ void spectrum_rows_cells(struct spectrum_rows *t, int field, uint32_t first, uin
 	for (uint32_t n = 0; n < lanes->planes; n++) {
 		const float *from = lanes->value + n * plane + (size_t)first * SPECTRUM_BLOCK;
 		for (uint32_t r = 0; r < count; r++, from += SPECTRUM_BLOCK) {
-			__builtin_prefetch(from + (size_t)SPAN_ROWS * SPECTRUM_BLOCK); /* so many planes at once no processor foresees */
+			/* So many planes at once no processor foresees. An address, since there may be no such row. */
+			__builtin_prefetch((const void *)((uintptr_t)from + sizeof *from * SPAN_ROWS * SPECTRUM_BLOCK));
 			memcpy(t->lanes + r * width + n * SPECTRUM_BLOCK, from, SPECTRUM_BLOCK * sizeof *from);
 		}
 	}
