@@ -21,7 +21,7 @@ static struct search search_for(int effort)
 {
 	static const struct search searches[9] = {
 		{0.991, 1.25, 1.10, 2},   {0.991, 1.15, 1.06, 3},   {0.991, 1.10, 1.04, 3},
-		{0.991, 1.06, 1.02, 4},   {0.991, 1.03, 1.01, 5},   {0.991, 1.02, 1.007, 5},
+		{0.991, 1.06, 1.02, 4},   {0.992, 1.036, 1.013, 5}, {0.991, 1.02, 1.007, 5},
 		{0.994, 1.016, 1.006, 6}, {0.996, 1.012, 1.004, 8}, {0.998, 1.008, 1.003, 10},
 	};
 	return searches[effort < 1 ? 0 : effort > 9 ? 8 : effort - 1];
@@ -140,11 +140,10 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	const struct search search = search_for(effort);
 	const uint32_t limit = e->limit[e->layers - 1];
 	struct rate rate;
-	const bool noisy = e->model->noisy;
 	const double room = (double)limit - (double)e->head_bytes;
-	struct attempt a = {.rate = &rate, .room = room, .bias = noisy ? 0.97 : 1 /* noise leaves more levels that stand alone */};
-	double bits = search.aim * room * 8 / (noisy ? 1.18 : 0.99); /* by rate_bits; the coder takes so many for each */
-	float fitting = 0;                                           /* the step that filled the record best */
+	struct attempt a = {.rate = &rate, .room = room, .bias = e->model->noisy ? 1.01 : 1};
+	double bits = search.aim * room * 8 / rate_each(fmax(room, 1), e->model->noisy); /* by rate_bits */
+	float fitting = 0;                                                               /* the step that filled the record best */
 	uint64_t most = 0;
 
 	rate_measure(e->model, e->planes->dims, &rate);
