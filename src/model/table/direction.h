@@ -161,8 +161,8 @@ static inline struct lattice_point direction_point(const struct direction_argume
 }
 
 /*
- * One pair of directions; false, and nothing set, where direction_usable says so. As vectors of which *squared begins with h^2, and *out is (meaningless, d, p, 0): for the kernels. Few operations,
- * because a single look-up waits for all of them; and what does not need h need not wait for its root.
+ * One pair of directions; false, and nothing set, where direction_usable says so. As vectors of which *squared begins with h^2, and
+ * *out is (meaningless, d, p, 0): for the kernels. Few operations, because a single look-up waits for all of them; and what does not need h need not wait for its root.
  */
 static inline bool direction_locate_squared(f32x4 scale, const float wi[3], const float wo[3], f32x4 *squared, f32x4 *out)
 {
