@@ -61,11 +61,28 @@ static void weights_come_back(void **state)
 	}
 }
 
+static void a_weight_beyond_the_largest_is_refused(void **state)
+{
+	(void)state;
+	for (uint32_t n = 0; n < SPECTRAL_WEIGHTS; n += 17)
+		for (uint8_t most = SPECTRAL_WEIGHT_MOST; most <= SPECTRAL_WEIGHT_MOST + 1; most++) {
+			struct spectral_weights weights = {.graded = true}, back = {.graded = true};
+			struct byte_buffer bytes = {0};
+			weights.weight[n] = most;
+			weights_encode(&weights, &bytes);
+			const char *fault = weights_decode(bytes.bytes, bytes.count, &back);
+			assert_true((fault != NULL) == (most > SPECTRAL_WEIGHT_MOST));
+			assert_true(!fault || strstr(fault, "from 0 to 63"));
+			byte_buffer_free(&bytes);
+		}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(details_and_high_harmonics_have_coarser_steps),
 		cmocka_unit_test(weights_come_back),
+		cmocka_unit_test(a_weight_beyond_the_largest_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,7 +9,7 @@
 
 enum { FORESEEABLE = 2000 };             /* bytes of the higher planes below which too little is known to foresee the rest */
 static const float ROUNDING = 0.4f;      /* a level is rounded down up to 0.6: what is rare costs more than it is worth */
-static const double RATE_ROUNDING = 0.3; /* what spectral_rate was measured with; thinned levels are about as many */
+static const double RATE_ROUNDING = 0.3; /* what rate.h was measured with; thinned levels are about as many */
 
 /* How near the bytes of all units must come to the budget, as ratios, and what is aimed at; how often a step may be tried. */
 struct search {
@@ -141,6 +141,7 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	const uint32_t limit = e->limit[e->layers - 1];
 	struct rate rate;
 	const double room = (double)limit - (double)e->head_bytes;
+	/* More than foreseen take, at 60,400 and 16,000 bytes, 50 noisy surrogates 1.1 % and 0.0 %, 50 clean ones 0.1 % and 0.5 %. */
 	struct attempt a = {.rate = &rate, .room = room, .bias = e->model->noisy ? 1.01 : 1};
 	double bits = search.aim * room * 8 / rate_each(fmax(room, 1), e->model->noisy); /* by rate_bits */
 	float fitting = 0;                                                               /* the step that filled the record best */

@@ -14,10 +14,9 @@
 enum {
 	CODEC_FIELDS = 0,
 	CODEC_PLANES = 1,
-	FIELDS_BYTES = 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4, /* before limit and weights */
-	FIELDS_VERSION = 3,                               /* rows of phi_d are whole */
-	FIELDS_VERSION_CUT = 4,                           /* they are cut at the horizon: spans.h */
-	FIELDS_VERSION_GRADED = 5,                        /* cut there or before, and steps go by frequency too: spectral_weights.h */
+	FIELDS_VERSION = 3,        /* rows of phi_d are whole */
+	FIELDS_VERSION_CUT = 4,    /* they are cut at the horizon: spans.h */
+	FIELDS_VERSION_GRADED = 5, /* cut there or before, and steps go by frequency too: spectral_weights.h */
 	PLANES_VERSION = 2
 };
 
@@ -32,13 +31,28 @@ static const struct section_kind KINDS[] = {
 static const uint32_t PREVIEWS[] = {4096, 16384, 65536, 262144, 1048576};
 enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
+/*
+ * What the model is says how its fields are written. All three are in use: rows are whole where an error was asked for or nothing can be
+ * seen, cut at the horizon where a table is too small to be graded; all else is graded.
+ */
+static uint16_t fields_version(const struct spectral_model *model)
+{
+	if (model->weights.graded)
+		return FIELDS_VERSION_GRADED;
+	return model->limit > 0 ? FIELDS_VERSION_CUT : FIELDS_VERSION;
+}
+
+/* Bytes of the fields' section before the weights. */
+static uint32_t fields_bytes(uint32_t version)
+{
+	return 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 + (version == FIELDS_VERSION_GRADED ? 4 : 0);
+}
+
 /* ---- encoding ---- */
 
 static void fields_write(const struct encoding *e, const struct byte_buffer *weights, struct section_list *sections)
 {
-	const uint16_t version = e->model->weights.graded ? FIELDS_VERSION_GRADED
-	                         : e->model->limit > 0    ? FIELDS_VERSION_CUT
-	                                                  : FIELDS_VERSION;
+	const uint16_t version = fields_version(e->model);
 	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS, version, 0, SECTION_REQUIRED, NAN);
 	write_f64(out, e->model->unit);
 	for (int c = 0; c < 3; c++)
@@ -102,8 +116,8 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 		e.limit[e.layers++] = PREVIEWS[i];
 	e.limit[e.layers++] = budget;
 	weights_encode(&e.model->weights, &weights);
-	e.head_bytes = record_head_size(request->name_bytes, e.layers, e.layers + 1) + FIELDS_BYTES + weights.count +
-	               (e.model->weights.graded ? 4 : 0);
+	e.head_bytes =
+		record_head_size(request->name_bytes, e.layers, e.layers + 1) + fields_bytes(fields_version(e.model)) + weights.count;
 	least = e.head_bytes + e.layers * 8;
 	if (weights.failed)
 		status = error_memory(error, SPECTRAL_WEIGHTS);
@@ -140,7 +154,7 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 static bp_status fields_read(const struct section_bytes *section, struct spectral_model *model, bp_error *error)
 {
 	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
-	const uint32_t version = section->entry->version, before_weights = FIELDS_BYTES + (version == FIELDS_VERSION_GRADED ? 4 : 0);
+	const uint32_t version = section->entry->version, before_weights = fields_bytes(version);
 	if (section->entry->bytes < before_weights)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %u and weights",
 		                 section->entry->bytes, before_weights);

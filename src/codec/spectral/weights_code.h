@@ -1,5 +1,5 @@
 /*
- * weights_code.h: a model's weights as bytes (FORMAT.md, "Weights"): as they are where it is not graded, else each as its difference
+ * weights_code.h: a model's weights as bytes (FORMAT.md, "Fields"): as they are where it is not graded, else each as its difference
  * from what those before it make likely, range coded.
  */
 #ifndef CODEC_SPECTRAL_WEIGHTS_CODE_H

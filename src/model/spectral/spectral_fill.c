@@ -118,7 +118,9 @@ static float start_value(size_t slice, const uint8_t *valid, const float *table)
 bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *const table[3], spectral_ready_fn *ready, void *user,
                         bp_error *error)
 {
-	const size_t p = d.phi_d, rows = (size_t)d.theta_h * d.theta_d, slice = d.theta_d * p;
+	const size_t rows = (size_t)d.theta_h * d.theta_d, slice = (size_t)d.theta_d * d.phi_d;
+	const uint8_t *any = memchr(valid, 1, rows * d.phi_d);
+	const size_t first = any ? (size_t)(any - valid) / slice : 0;
 	uint8_t *present = malloc(rows);
 	struct runs runs = {0};
 	struct fill *fill = NULL;
@@ -127,8 +129,6 @@ bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *cons
 	if (!status)
 		status = runs_make(d, valid, present, &runs, error);
 	for (int c = 0; !status && c < 3; c++) {
-		const uint8_t *any = memchr(valid, 1, rows * p);
-		const size_t first = any ? (size_t)(any - valid) / slice : 0;
 		if (ready)
 			ready(user, c, (first + 1) * slice);
 		float empty = start_value(slice, valid + first * slice, table[c] + first * slice);

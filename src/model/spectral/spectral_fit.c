@@ -273,6 +273,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		project = project && cut;
 		if (cut) {
 			spectral_weights_find(&seen, fitted->unit, &fitted->weights);
+			/* A model that is not graded has the limit of the horizon: records of such have no place for another. */
 			fitted->limit = fitted->weights.graded ? spans_limit(&seen) : SPAN_MARGIN;
 		}
 	}
