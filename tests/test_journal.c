@@ -15,16 +15,16 @@
 #include <unistd.h>
 
 #include "packed_fixture.h"
+#include "scratch.h"
 #include "tool/build/journal.h"
 
 static const struct fit_options OPTIONS = {.profile = PROFILE_SPECTRAL, .budget_bytes = 2000, .effort = 5};
-static char folder[64], output[96], remark[JOURNAL_REMARK_BYTES];
+static char folder[SCRATCH_BYTES], output[SCRATCH_BYTES + 32], remark[JOURNAL_REMARK_BYTES];
 
 static int folder_make(void **state)
 {
 	(void)state;
-	strcpy(folder, "/tmp/brdfpack-journal.XXXXXX");
-	assert_non_null(mkdtemp(folder));
+	assert_int_equal(scratch_folder(folder), 0);
 	snprintf(output, sizeof output, "%s/out.bpk", folder);
 	return 0;
 }
