@@ -133,31 +133,6 @@ static void a_filled_cell_becomes_the_mean_of_its_neighbours(void **unused)
 	}
 }
 
-/* Whole rows of four and what is left of them, pieces of 48 columns and what is left of them. */
-static void products_with_tables_are_sums_in_ascending_order(void **unused)
-{
-	enum { ROWS = 7, COUNT = 5, COLUMNS = 112 };
-	float in[ROWS][COUNT], matrix[COUNT * COLUMNS], out[2][ROWS][COLUMNS];
-	(void)unused;
-	random_floats(in[0], ROWS * COUNT);
-	random_floats(matrix, COUNT * COLUMNS);
-	for (size_t columns = 16; columns <= COLUMNS; columns += 16)
-		for (size_t rows = 1; rows <= ROWS; rows++) {
-			memset(out, 0, sizeof out);
-			for (int n = 0; n < 2; n++)
-				table(n)->cosine_product(in[0], COUNT, rows, COUNT, matrix, columns, out[n][0], COLUMNS);
-			for (size_t r = 0; r < ROWS; r++)
-				for (size_t c = 0; c < COLUMNS; c++) {
-					volatile float sum = 0, product;
-					for (size_t k = 0; k < COUNT && r < rows && c < columns; k++) {
-						product = in[r][k] * matrix[k * columns + c];
-						sum += product;
-					}
-					assert_true(out[0][r][c] == sum && out[1][r][c] == sum);
-				}
-		}
-}
-
 static void a_row_unfolds_about_its_middle(void **unused)
 {
 	float sum[N], difference[N], out[2][N];
@@ -238,7 +213,7 @@ static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 	assert_memory_equal(rgb[0], rgb[1], sizeof rgb[0]);
 }
 
-/* Any number of rows, by columns in fours of 16 and what is left of them: the sum in ascending order, and nothing beside it. */
+/* Fours of rows and what is left of them, of these pieces of 48 columns and what is left: the sum in ascending order, and nothing beside it. */
 static void products_of_rows_with_a_matrix(void **unused)
 {
 	enum { COUNT = 11, IN = 13, OUT = 150, ROWS = 9 };
@@ -272,7 +247,6 @@ int main(void)
 		cmocka_unit_test(moments_weigh_large_coefficients_less),
 		cmocka_unit_test(worths_are_those_of_their_formula),
 		cmocka_unit_test(a_filled_cell_becomes_the_mean_of_its_neighbours),
-		cmocka_unit_test(products_with_tables_are_sums_in_ascending_order),
 		cmocka_unit_test(a_row_unfolds_about_its_middle),
 		cmocka_unit_test(coefficients_are_drawn_to_0_by_the_noise_around_them),
 		cmocka_unit_test(values_are_0_at_and_below_the_logarithms_of_0),
