@@ -21,35 +21,26 @@
 #include "archive/reader.h"
 #include "archive/writer.h"
 #include "codec/section.h"
+#include "scratch.h"
 
 #define FIXTURE __attribute__((unused)) static
 
 /* A folder of this test program's own; removed by fixture_folder_remove. */
-static char fixture_folder[64];
+static char fixture_folder[SCRATCH_BYTES];
 
 FIXTURE int fixture_folder_make(void **state)
 {
 	(void)state;
-	strcpy(fixture_folder, "/tmp/brdfpack-test-XXXXXX");
-	return mkdtemp(fixture_folder) ? 0 : -1;
+	return scratch_folder(fixture_folder);
 }
 
 FIXTURE int fixture_folder_remove(void **state)
 {
-	char command[128];
 	(void)state;
-	snprintf(command, sizeof command, "rm -rf '%s'", fixture_folder);
-	return system(command);
+	return scratch_remove(fixture_folder);
 }
 
-FIXTURE const char *fixture_path(const char *name)
-{
-	static char path[4][512];
-	static int turn;
-	turn = (turn + 1) % 4;
-	snprintf(path[turn], sizeof path[turn], "%s/%s", fixture_folder, name);
-	return path[turn];
-}
+FIXTURE const char *fixture_path(const char *name) { return scratch_in(fixture_folder, name); }
 
 FIXTURE void fixture_head(struct record_head *head, const char *name)
 {

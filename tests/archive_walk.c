@@ -8,6 +8,7 @@
 
 #include "archive/reader.h"
 #include "merl/merl_file.h"
+#include "scratch.h"
 #include "tool/facts.h"
 
 static void values_check(const float *value, int count)
@@ -46,10 +47,9 @@ static bool material_small(const bp_archive *archive, uint64_t m, char name[BP_N
 /* A path of this process's own, in memory where possible: recovery syncs what it writes. */
 static const char *scratch_path(char which)
 {
-	static char path[64];
-	snprintf(path, sizeof path, "%s/brdfpack-walk-%ld-%c", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid(),
-	         which);
-	return path;
+	char name[64];
+	snprintf(name, sizeof name, "brdfpack-walk-%ld-%c", (long)getpid(), which);
+	return scratch_in(access("/dev/shm", W_OK) == 0 ? "/dev/shm" : scratch_parent(), name);
 }
 
 /* Every head, as `list` reads them; those of materials first.. are printed, in its longest form. */

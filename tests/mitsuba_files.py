@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Exported .bsdf files in Mitsuba 3's own `measured`: mitsuba_files.py VARIANT TOOL ARCHIVE FOLDER NAME[:DB]...
 
-FOLDER holds NAME.bsdf for each. Without :DB figures are told and held to nothing; else: a sphere under the point lights against `brdfpack render --light point` has DB at least, the directional
-albedo differs by 1 % at most, and Mitsuba's chi-square test of sampling passes (llvm variants). In a spectral variant, with files of
-`extract --spectral`, spectra seen by Mitsuba's observer under D65 are the RGB values of the library.
+FOLDER holds NAME.bsdf for each. Without :DB figures are told and held to nothing; else: a sphere under the point lights against
+`brdfpack render --light point` has DB at least, the directional albedo differs by 1 % at most, and Mitsuba's chi-square test of
+sampling passes (llvm variants). In a spectral variant, with files of `extract --spectral`, spectra seen by Mitsuba's observer under
+D65 are the RGB values of the library.
 """
 import contextlib
 import io

@@ -8,7 +8,7 @@ for program in munged slurmctld slurmd sbatch; do
 	command -v $program >/dev/null || { echo "skip: no $program (apt-get install slurm-wlm munge)"; exit 77; }
 done
 [ "$(id -u)" = 0 ] || { echo "skip: slurmd starts tasks as their users, which takes root"; exit 77; }
-scratch=$(mktemp -d /tmp/brdfpack-slurm.XXXXXX)
+scratch=$(mktemp -d "${TMPDIR:-/tmp}/brdfpack-slurm.XXXXXX")
 pids=()
 finish() {
 	local code=$?

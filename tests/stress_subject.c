@@ -9,6 +9,7 @@
 #include "archive/writer.h"
 #include "codec/record_carried.h"
 #include "merl/merl_file.h"
+#include "scratch.h"
 #include "stress_cases.h"
 
 void packed_make(const struct lattice *lattice, const struct carried *carried, const char *name,
@@ -57,9 +58,8 @@ size_t packed_bad_values(const struct packed_table *packed)
 static void through_file(const struct packed_table *packed, bool plain, const uint8_t *below, struct lattice *out,
                          struct carried *carried)
 {
-	char path[] = "/tmp/brdfpack-stress-XXXXXX";
-	const int fd = mkstemp(path);
-	if (fd < 0 || close(fd) != 0 ||
+	char path[SCRATCH_BYTES];
+	if (scratch_file(path) != 0 ||
 	    lattice_write_path(path, OUTPUT_REPLACE, &packed->table, below, plain ? NULL : packed->record,
 	                       plain ? 0 : packed->record_bytes, NULL) != BP_OK ||
 	    lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = carried}, out, NULL) != BP_OK ||
@@ -143,13 +143,10 @@ static void material_exercise(const bp_material *material, unsigned pairs, uint6
 
 static const char *archive_write(const struct packed_table *packed, size_t count)
 {
-	static char path[64];
+	static char path[SCRATCH_BYTES];
 	struct archive_writer *writer = NULL;
-	int fd;
 
-	strcpy(path, "/tmp/brdfpack-stress-XXXXXX");
-	fd = mkstemp(path);
-	if (fd < 0 || close(fd) != 0 || archive_writer_open(path, &writer, NULL) != BP_OK)
+	if (scratch_file(path) != 0 || archive_writer_open(path, &writer, NULL) != BP_OK)
 		return NULL;
 	for (size_t i = 0; i < count; i++)
 		if (!packed[i].status && archive_writer_add(writer, packed[i].record, packed[i].record_bytes, NULL) != BP_OK) {

@@ -13,16 +13,13 @@
 #include <cmocka.h>
 
 #include "bench/inputs.h"
+#include "scratch.h"
 
-static char folder[] = "/tmp/test-bench-XXXXXX";
+static char folder[SCRATCH_BYTES];
 
 static void make_file(const char *name, const char *text)
 {
-	char path[256];
-	FILE *file;
-
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	file = fopen(path, "w");
+	FILE *file = fopen(scratch_in(folder, name), "w");
 	assert_non_null(file);
 	fputs(text, file);
 	fclose(file);
@@ -33,7 +30,7 @@ static const char *const NAMES[] = {"c.binary", "a.binary", "e.binary", "b.binar
 static int make_folder(void **unused)
 {
 	(void)unused;
-	if (!mkdtemp(folder))
+	if (scratch_folder(folder))
 		return -1;
 	for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
 		make_file(NAMES[n], "# a comment\nb\t35 MB\nd\nno-such\n");
@@ -42,14 +39,8 @@ static int make_folder(void **unused)
 
 static int remove_folder(void **unused)
 {
-	char path[256];
-
 	(void)unused;
-	for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
-		snprintf(path, sizeof path, "%s/%s", folder, NAMES[n]);
-		unlink(path);
-	}
-	return rmdir(folder);
+	return scratch_remove(folder);
 }
 
 static void check_names(const struct inputs *inputs, const char *expected)
@@ -77,13 +68,11 @@ static void a_folder_gives_its_merl_files_in_order(void **unused)
 static void a_list_keeps_what_it_names(void **unused)
 {
 	struct inputs inputs = {.count = 0};
-	char list[256];
 	(void)unused;
 
-	snprintf(list, sizeof list, "%s/list", folder);
 	assert_true(inputs_add(&inputs, folder));
 	inputs_sort(&inputs);
-	assert_true(inputs_keep_listed(&inputs, list));
+	assert_true(inputs_keep_listed(&inputs, scratch_in(folder, "list")));
 	check_names(&inputs, "bd");
 	inputs_free(&inputs);
 }

@@ -12,17 +12,16 @@
 
 #include "render/canvas.h"
 #include "render/font.h"
+#include "scratch.h"
 
-static char folder[] = "/tmp/test_canvas.XXXXXX";
-static char path[64];
+static char folder[SCRATCH_BYTES];
+static const char *path;
 
 static int folder_make(void **state)
 {
 	(void)state;
-	if (!mkdtemp(folder))
-		return -1;
-	snprintf(path, sizeof path, "%s/picture", folder);
-	return 0;
+	path = scratch_folder(folder) ? NULL : scratch_in(folder, "picture");
+	return path ? 0 : -1;
 }
 
 static int folder_remove(void **state)

@@ -11,6 +11,7 @@
 
 #include "render/comparison.h"
 #include "render/figure.h"
+#include "scratch.h"
 
 static const struct lattice_dims SMALL = {6, 5, 8};
 
@@ -107,11 +108,9 @@ static void the_figure_is_written_as_svg_and_as_png(void **state)
 	struct expansion table;
 	struct density_source source;
 	double profile[6];
-	char path[] = "/tmp/test_comparison.XXXXXX", start[256];
+	char path[SCRATCH_BYTES], start[256];
 	tables_make(1.1, &lattice, &table);
-	int fd = mkstemp(path);
-	assert_true(fd >= 0);
-	close(fd);
+	assert_int_equal(scratch_file(path), 0);
 	assert_int_equal(density_source_measured(&lattice, &source, &error), BP_OK);
 	error_profile(&lattice, &table, profile);
 	struct figure figure = {.title = "a <small> lattice",

@@ -11,10 +11,11 @@
 
 #include <cmocka.h>
 
+#include "scratch.h"
 #include "tool/cores.h"
 #include "tool/workers.h"
 
-static char root[] = "/tmp/brdfpack-cores-XXXXXX";
+static char root[SCRATCH_BYTES];
 
 static void put(const char *path, const char *text)
 {
@@ -30,26 +31,18 @@ static void put(const char *path, const char *text)
 	fclose(file);
 }
 
-static struct cores_limits read_limits(void)
-{
-	char groups[64];
-	snprintf(groups, sizeof groups, "%s/groups", root);
-	return cores_limits_read(root, groups);
-}
+static struct cores_limits read_limits(void) { return cores_limits_read(root, scratch_in(root, "groups")); }
 
 static int setup(void **state)
 {
 	(void)state;
-	strcpy(root, "/tmp/brdfpack-cores-XXXXXX");
-	return mkdtemp(root) ? 0 : 1;
+	return scratch_folder(root);
 }
 
 static int teardown(void **state)
 {
-	char command[128];
 	(void)state;
-	snprintf(command, sizeof command, "rm -r %s", root);
-	return system(command);
+	return scratch_remove(root);
 }
 
 static void nothing_said_is_no_limit(void **state)

@@ -4,24 +4,17 @@
 #include <float.h>
 
 #include "half.h"
+#include "held_archive.h"
 #include "packed_fixture.h"
 
 static const struct lattice_dims DIMS = {12, 10, 24};
 enum { CELLS = 12 * 10 * 24 };
 
-/* One material in an archive in memory. */
-struct held {
-	uint8_t *bytes;
-	bp_archive *archive;
-};
-
 static struct held held_make(double unit)
 {
-	struct held held;
 	struct lattice lattice;
 	uint8_t *record;
-	size_t record_bytes, count;
-	bp_writer *writer;
+	size_t record_bytes;
 	glossy_lattice_make(DIMS, unit, &lattice);
 	for (size_t n = 0; n < CELLS; n += 5)
 		lattice.valid[n] = 0;
@@ -29,20 +22,10 @@ static struct held held_make(double unit)
 	const struct fit_options options = {.profile = PROFILE_SPECTRAL, .budget_bytes = 60400, .effort = 5};
 	const struct record_source source = {0};
 	assert_int_equal(record_encode(&lattice, "a", &source, &options, &record, &record_bytes, NULL, NULL), BP_OK);
-	assert_int_equal(bp_writer_create(&writer, NULL), BP_OK);
-	assert_int_equal(bp_writer_add(writer, record, record_bytes, NULL), BP_OK);
-	assert_int_equal(bp_writer_save_memory(writer, &held.bytes, &count, NULL), BP_OK);
-	assert_int_equal(bp_archive_open_memory(held.bytes, count, &held.archive, NULL), BP_OK);
-	bp_writer_free(writer);
+	const struct held held = held_of(record, record_bytes);
 	free(record);
 	lattice_free(&lattice);
 	return held;
-}
-
-static void held_free(struct held *held)
-{
-	bp_archive_close(held->archive);
-	bp_free(held->bytes);
 }
 
 static double half_value(uint16_t code)

@@ -13,6 +13,7 @@
 
 #include "merl/demo.h"
 #include "merl/merl_file.h"
+#include "scratch.h"
 
 static const struct lattice_dims SMALL = {24, 20, 36};
 
@@ -220,13 +221,13 @@ static void dark_readings_come_out_negative_and_are_saved_so(void **state)
 {
 	(void)state;
 	struct lattice noisy, read;
-	char path[] = "/tmp/brdfpack-demo-XXXXXX";
+	char path[SCRATCH_BYTES];
 	assert_int_equal(demo_generate(demo_find("piano-lacquer"), SMALL, false, &noisy, NULL), BP_OK);
 	size_t negative = 0;
 	for (size_t n = 0; n < lattice_cells(SMALL); n++)
 		negative += noisy.rgb[0][n] < 0 && noisy.rgb[0][n] > -1e-4;
 	assert_true(negative > 0);
-	close(mkstemp(path));
+	assert_int_equal(scratch_file(path), 0);
 	assert_int_equal(lattice_save_path(path, OUTPUT_REPLACE, &noisy, NULL), BP_OK);
 	assert_int_equal(lattice_read_path(path, &(struct merl_reading){.any_dims = true}, &read, NULL), BP_OK);
 	assert_int_equal(noisy.valid_count, read.valid_count);

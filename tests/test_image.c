@@ -1,5 +1,4 @@
 /* test_image.c: exposure, the sRGB curve, and image files. */
-#include <dirent.h>
 #include <math.h>
 #include <png.h>
 #include <setjmp.h>
@@ -12,13 +11,14 @@
 #include <cmocka.h>
 
 #include "render/picture.h"
+#include "scratch.h"
 
-static char folder[] = "/tmp/test_image.XXXXXX";
+static char folder[SCRATCH_BYTES];
 
 static int folder_make(void **state)
 {
 	(void)state;
-	return mkdtemp(folder) ? 0 : -1;
+	return scratch_folder(folder);
 }
 
 /* Nothing that a test left behind may stay: also a check that failed writes leave no file. */
@@ -28,22 +28,7 @@ static int folder_remove(void **state)
 	return rmdir(folder);
 }
 
-static int files_in_folder(void)
-{
-	int count = -2; /* . and .. */
-	DIR *dir = opendir(folder);
-	while (readdir(dir))
-		count++;
-	closedir(dir);
-	return count;
-}
-
-static const char *path_of(const char *name)
-{
-	static char path[256];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	return path;
-}
+static const char *path_of(const char *name) { return scratch_in(folder, name); }
 
 static void image_make(uint32_t size, struct sphere_image *image)
 {
@@ -195,7 +180,7 @@ static void a_path_that_cannot_be_written_is_named_and_nothing_is_left(void **st
 	assert_int_equal(picture_write_png(path, &picture, &error), BP_ERROR_IO);
 	assert_non_null(strstr(error.message, path));
 	assert_int_equal(image_write_pfm(path_of("missing/a.pfm"), &image, &error), BP_ERROR_IO);
-	assert_int_equal(files_in_folder(), 0);
+	assert_int_equal(scratch_count(folder), 0);
 	picture_free(&picture);
 	sphere_image_free(&image);
 }

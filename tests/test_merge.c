@@ -64,9 +64,8 @@ static void a_subset_has_the_chosen_records_byte_for_byte(void **state)
 	assert_int_equal(bp_archive_count(to), 2);
 	assert_int_equal(bp_archive_name(to, 0, name, NULL), BP_OK);
 	assert_string_equal(name, "chrome");
-	for (int n = 0; n < 2; n++) {
+	for (int n = 0; n < 2; n++)
 		same_record(from, to, n ? "nickel" : "chrome");
-	}
 	assert_int_equal(bp_archive_verify(to, 0, NULL, NULL, NULL), BP_OK);
 	bp_archive_close(to);
 	bp_archive_close(from);

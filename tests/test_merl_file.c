@@ -16,16 +16,12 @@
 #include <cmocka.h>
 
 #include "merl/merl_file.h"
+#include "scratch.h"
 #include "words.h"
 
-static char folder[] = "/tmp/brdfpack-test-XXXXXX";
+static char folder[SCRATCH_BYTES];
 
-static const char *in_folder(const char *name)
-{
-	static char path[256];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	return path;
-}
+static const char *in_folder(const char *name) { return scratch_in(folder, name); }
 
 /* A MERL file in memory, as another program would lay it out. */
 struct image {
@@ -331,7 +327,7 @@ static void a_failed_write_names_the_path_and_leaves_nothing(void **state)
 static int make_folder(void **state)
 {
 	(void)state;
-	return mkdtemp(folder) ? 0 : -1;
+	return scratch_folder(folder);
 }
 
 /* rmdir fails, and so does the group, when a test left a temporary file behind. */

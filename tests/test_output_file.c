@@ -47,16 +47,7 @@ int fsync(int fd)
 	return (int)syscall(SYS_fsync, fd);
 }
 
-static unsigned files_in_folder(void)
-{
-	char command[160];
-	unsigned count = 0;
-	snprintf(command, sizeof command, "ls -A '%s' | wc -l", fixture_folder);
-	FILE *pipe = popen(command, "r");
-	assert_int_equal(fscanf(pipe, "%u", &count), 1);
-	pclose(pipe);
-	return count;
-}
+static int files_in_folder(void) { return scratch_count(fixture_folder); }
 
 static bp_status put(const char *path, enum output_rule rule, const char *text, bp_error *error)
 {

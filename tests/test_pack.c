@@ -4,6 +4,7 @@
 #include <float.h>
 #include <pthread.h>
 
+#include "held_archive.h"
 #include "merl/merl_file.h"
 #include "packed_fixture.h"
 
@@ -588,22 +589,13 @@ static void values_at_the_end_of_the_range_are_cut(void **state)
 		const bp_pack_options options = {.struct_bytes = sizeof options, .profile = profile};
 		const bp_table_options doubles = {.struct_bytes = sizeof doubles, .number = BP_NUMBER_DOUBLE, .continued = 1};
 		struct packed packed = pack(&measured, "a", &options);
-		bp_writer *writer = NULL;
-		bp_archive *archive = NULL;
-		uint8_t *bytes = NULL;
-		size_t count;
-		assert_int_equal(bp_writer_create(&writer, NULL), BP_OK);
-		assert_int_equal(bp_writer_add(writer, packed.bytes, packed.count, NULL), BP_OK);
-		assert_int_equal(bp_writer_save_memory(writer, &bytes, &count, NULL), BP_OK);
-		assert_int_equal(bp_archive_open_memory(bytes, count, &archive, NULL), BP_OK);
-		assert_int_equal(bp_archive_table(archive, 0, &doubles, values, 3 * CELLS * sizeof *values, NULL), BP_OK);
+		struct held held = held_of(packed.bytes, packed.count);
+		assert_int_equal(bp_archive_table(held.archive, 0, &doubles, values, 3 * CELLS * sizeof *values, NULL), BP_OK);
 		for (size_t n = 0; n < 3 * CELLS; n++)
 			assert_true(values[n] >= 0 && values[n] <= DBL_MAX);
 		for (size_t n = 0; profile == PROFILE_SPECTRAL && n < 3 * CELLS; n++)
 			assert_true(values[n] > 0x1p1009); /* more than about 2^1010 is not decoded */
-		bp_archive_close(archive);
-		bp_writer_free(writer);
-		bp_free(bytes);
+		held_free(&held);
 		bp_free(packed.bytes);
 	}
 	free(values);

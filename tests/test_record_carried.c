@@ -17,6 +17,7 @@
 #include "codec/section.h"
 #include "merl/merl_file.h"
 #include "packed_fixture.h"
+#include "scratch.h"
 
 static const struct lattice_dims DIMS = {20, 16, 24};
 static const struct fit_options USUAL[2] = {{.profile = PROFILE_PAPER, .budget_bytes = 9000, .effort = 5},
@@ -83,10 +84,8 @@ static void file_free(struct file *file)
 /* Through a file, which carries these bytes. */
 static void extracted(const struct packed *packed, const uint8_t *carried, size_t bytes, struct file *out)
 {
-	char path[] = "/tmp/brdfpack-carried-XXXXXX";
-	const int fd = mkstemp(path);
-	assert_true(fd >= 0);
-	close(fd);
+	char path[SCRATCH_BYTES];
+	assert_int_equal(scratch_file(path), 0);
 	assert_int_equal(lattice_write_path(path, OUTPUT_REPLACE, &packed->table, packed->below, carried, bytes, NULL), BP_OK);
 	assert_int_equal(
 		lattice_read_path(path, &(struct merl_reading){.any_dims = true, .carried = &out->carried}, &out->lattice, NULL), BP_OK);

@@ -5,7 +5,6 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include "merl/reciprocity.h"
 #include "merl/rgl_file.h"
 #include "merl/two_halves.h"
+#include "memory_limit.h"
 #include "tensor_maker.h"
 #include "words.h"
 
@@ -45,6 +45,16 @@ static bp_status bytes_read(const struct byte_buffer *bytes, struct lattice *lat
 		lattice_read(memory_read, &memory, &(struct merl_reading){.origin = origin, .file_bytes = &file_bytes}, lattice, error);
 	assert_true(status != BP_OK || file_bytes == bytes->count);
 	return status;
+}
+
+/* The usual material as a file; the caller frees it. */
+static void usual_make(struct byte_buffer *bytes)
+{
+	struct made_file made = {0};
+	*bytes = (struct byte_buffer){0};
+	made_material(&made);
+	made_write(&made, bytes);
+	made_free(&made);
 }
 
 static bp_status made_read(const struct made_file *made, struct lattice *lattice, struct origin *origin, bp_error *error)
@@ -249,10 +259,8 @@ static void cells_without_data_in_a_direction_are_invalid(void **state)
 static void every_beginning_of_a_tensor_file_is_refused(void **state)
 {
 	(void)state;
-	struct made_file made = {0};
-	struct byte_buffer bytes = {0};
-	made_material(&made);
-	made_write(&made, &bytes);
+	struct byte_buffer bytes;
+	usual_make(&bytes);
 	const size_t whole = bytes.count;
 	for (bytes.count = 13; bytes.count < whole; bytes.count += 7) {
 		struct lattice lattice;
@@ -260,7 +268,6 @@ static void every_beginning_of_a_tensor_file_is_refused(void **state)
 		assert_int_equal(bytes_read(&bytes, &lattice, &origin, NULL), BP_ERROR_BAD_INPUT);
 	}
 	byte_buffer_free(&bytes);
-	made_free(&made);
 }
 
 /* Refused by its table alone: the arrays behind it are never asked for. */
@@ -284,24 +291,10 @@ static void an_anisotropic_file_is_refused_early(void **state)
 	made_free(&made);
 }
 
-/* Pages of this process that are mapped. */
-static size_t mapped_bytes(void)
-{
-	unsigned long pages = 0;
-	FILE *file = fopen("/proc/self/statm", "r");
-	assert_non_null(file);
-	assert_int_equal(fscanf(file, "%lu", &pages), 1);
-	fclose(file);
-	return pages * (size_t)sysconf(_SC_PAGESIZE);
-}
-
 /* Numbers of two bytes, which become floats: the most memory for a file's bytes. The limit is the system's own. */
 static void reading_takes_no_more_than_16_times_the_file(void **state)
 {
 	(void)state;
-#if defined __SANITIZE_ADDRESS__
-	skip(); /* the sanitizer's own memory has no such limit */
-#endif
 	enum { SIDE = 1024, LATTICE_BYTES = 48 << 20 };
 	struct made_file made = {0};
 	struct byte_buffer bytes = {0};
@@ -321,11 +314,9 @@ static void reading_takes_no_more_than_16_times_the_file(void **state)
 	const pid_t child = fork();
 	assert_true(child >= 0);
 	if (!child) {
-		const size_t most = mapped_bytes() + 16 * bytes.count + LATTICE_BYTES;
 		struct lattice lattice;
 		struct origin origin;
-		bool right =
-			setrlimit(RLIMIT_AS, &(struct rlimit){most, most}) == 0 && bytes_read(&bytes, &lattice, &origin, NULL) == BP_OK;
+		bool right = memory_limit(16 * bytes.count + LATTICE_BYTES) && bytes_read(&bytes, &lattice, &origin, NULL) == BP_OK;
 		right = right && origin.kind == ORIGIN_RGL_SPECTRA && lattice.valid_count > 900000;
 		_exit(right ? 0 : 1);
 	}
@@ -339,10 +330,8 @@ static void reading_takes_no_more_than_16_times_the_file(void **state)
 static void a_file_of_another_size_than_was_told_is_read_to_its_end(void **state)
 {
 	(void)state;
-	struct made_file made = {0};
-	struct byte_buffer bytes = {0};
-	made_material(&made);
-	made_write(&made, &bytes);
+	struct byte_buffer bytes;
+	usual_make(&bytes);
 	const size_t whole = bytes.count;
 	const struct {
 		size_t told, more;
@@ -361,7 +350,6 @@ static void a_file_of_another_size_than_was_told_is_read_to_its_end(void **state
 	}
 	alarm(0);
 	byte_buffer_free(&bytes);
-	made_free(&made);
 }
 
 static void foreign_files_are_called_what_they_are(void **state)

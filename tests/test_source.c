@@ -4,7 +4,6 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <errno.h>
-#include <ftw.h>
 #include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,19 +17,13 @@
 
 #include "merl/source.h"
 #include "merl/source_kind.h"
+#include "scratch.h"
 #include "words.h"
 
-static char folder[64];
+static char folder[SCRATCH_BYTES];
 
 /* A path in the test's folder; the last eight stay valid. */
-static const char *in(const char *name)
-{
-	static char paths[8][512];
-	static int next;
-	next = (next + 1) % 8;
-	snprintf(paths[next], sizeof paths[next], "%s/%s", folder, name);
-	return paths[next];
-}
+static const char *in(const char *name) { return scratch_in(folder, name); }
 
 static void put(const char *name, const void *bytes, size_t count)
 {
@@ -613,20 +606,13 @@ static void an_encrypted_member_is_refused_with_a_remedy(void **state)
 static int make_folder(void **state)
 {
 	(void)state;
-	strcpy(folder, "/tmp/brdfpack-test-XXXXXX");
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *place)
-{
-	(void)about, (void)kind, (void)place;
-	return remove(path);
+	return scratch_folder(folder);
 }
 
 static int remove_folder(void **state)
 {
 	(void)state;
-	return nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+	return scratch_remove(folder);
 }
 
 /* A container without any material is told where it was named, be it that the folder around it was named as well. */

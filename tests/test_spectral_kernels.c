@@ -213,7 +213,7 @@ static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 	assert_memory_equal(rgb[0], rgb[1], sizeof rgb[0]);
 }
 
-/* Fours of rows and what is left of them, 48 columns at once and what is left of them: the sum in ascending order, and nothing beside it. */
+/* Fours of rows and what is left of them; of these 48 columns at once and what is left: the sum in ascending order, nothing beside it. */
 static void products_of_rows_with_a_matrix(void **unused)
 {
 	enum { COUNT = 11, IN = 13, OUT = 150, ROWS = 9 };

@@ -8,17 +8,7 @@
 
 static const char *const NAMES[] = {"brass", "chrome", "delrin"};
 
-static unsigned files_in_folder(void)
-{
-	char command[160];
-	unsigned count = 0;
-	FILE *pipe;
-	snprintf(command, sizeof command, "ls -A '%s' | wc -l", fixture_folder);
-	pipe = popen(command, "r");
-	assert_int_equal(fscanf(pipe, "%u", &count), 1);
-	pclose(pipe);
-	return count;
-}
+static int files_in_folder(void) { return scratch_count(fixture_folder); }
 
 static void the_same_records_give_the_same_bytes(void **state)
 {

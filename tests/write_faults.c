@@ -8,7 +8,6 @@
  * What fails must say so, hand nothing out, and leave the older archive as it was and nothing beside it; what is packed must load,
  * with values that are finite and not negative.
  */
-#include <dirent.h>
 #include <dlfcn.h>
 #include <float.h>
 #include <math.h>
@@ -18,6 +17,7 @@
 #include <string.h>
 
 #include "brdfpack.h"
+#include "scratch.h"
 
 enum { H = 8, D = 7, P = 10, CELLS = H * D * P, VALUES = 3 * CELLS };
 
@@ -103,16 +103,6 @@ static struct bytes file_read(const char *path)
 	return file;
 }
 
-static int files_in(const char *folder)
-{
-	DIR *open = opendir(folder);
-	int count = 0;
-	while (open && readdir(open))
-		count++;
-	closedir(open);
-	return count - 2;
-}
-
 /* ---- starve ---- */
 
 typedef void arm_fn(const char *call, long at);
@@ -144,7 +134,7 @@ static long starve(const struct trial *trial, const char *call, const char *fold
 			fail("other bytes", trial->name, n);
 		if (trial->path) {
 			const struct bytes now = file_read(trial->path);
-			if (!bytes_same(now, before) || files_in(folder) != 1)
+			if (!bytes_same(now, before) || scratch_count(folder) != 1)
 				fail("the folder is not as it was", trial->name, n);
 			free(now.at);
 		}
