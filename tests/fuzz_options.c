@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 {
 	static const struct command command = {"fuzz", NULL, "", "Usage: fuzz\n"};
 	const char *output = NULL;
-	unsigned jobs = 1;
+	uint32_t jobs = 1;
 	int64_t budget = 1000;
 	double error = 1;
 	bool quiet = false;

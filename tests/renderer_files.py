@@ -64,7 +64,7 @@ class Tensor:
             (one, angles, self.channels, self.size, also), self.samples = fields["spectra"]
             assert list(fields["wavelengths"][1]) == sorted(fields["wavelengths"][1]) and len(fields["wavelengths"][1]) == self.channels
         assert one == 1 and angles == len(self.theta) and self.size == also
-        assert fields["luminance"][0] == (1, angles, self.size, self.size) and min(fields["luminance"][1]) >= 0
+        assert fields["luminance"][0] == (1, angles, self.size, self.size) and min(fields["luminance"][1]) > 0
         assert min(self.vndf) >= 0 and min(self.ndf) > 0 and abs(self.sigma[0] - 1) < 1e-5
         self.slices = [self.integrals(n) for n in range(angles)]
 

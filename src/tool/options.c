@@ -132,7 +132,7 @@ bool option_integer(const struct command *command, const struct option_rule *rul
 	const char *rest;
 	if (!digits_parse(text, &value, &rest) || *rest || (double)value < rule->least || (double)value > rule->most)
 		return range_refuse(command, rule, text);
-	*(int64_t *)rule->to = value;
+	*(uint32_t *)rule->to = (uint32_t)value;
 	return true;
 }
 
@@ -169,12 +169,8 @@ bool option_number(const struct command *command, const struct option_rule *rule
 
 bool option_jobs(const struct command *command, const struct option_rule *rule, const char *text)
 {
-	int64_t count;
-	const struct option_rule whole = {rule->name, rule->letter, option_integer, &count, 1, WORKERS_MAX};
-	if (!option_integer(command, &whole, text))
-		return false;
-	*(unsigned *)rule->to = (unsigned)count;
-	return true;
+	const struct option_rule whole = {rule->name, rule->letter, option_integer, rule->to, 1, WORKERS_MAX};
+	return option_integer(command, &whole, text);
 }
 
 bool option_light(const struct command *command, const struct option_rule *rule, const char *text)

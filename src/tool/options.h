@@ -34,10 +34,10 @@ struct option_rule {
 
 option_take_fn option_flag;    /* bool: true; the only one that has no value */
 option_take_fn option_text;    /* const char *: within argv */
-option_take_fn option_integer; /* int64_t; the whole text must be a number in [least, most] */
+option_take_fn option_integer; /* uint32_t; the whole text must be a number in [least, most], from 0 to 2^32 - 1 */
 option_take_fn option_bytes;   /* int64_t; may end in k, M (1000) or Ki, Mi (1024), with or without a B */
 option_take_fn option_number;  /* double */
-option_take_fn option_jobs;    /* unsigned, 1 to WORKERS_MAX */
+option_take_fn option_jobs;    /* uint32_t, 1 to WORKERS_MAX */
 option_take_fn option_light;   /* enum lighting */
 option_take_fn option_profile; /* enum profile */
 

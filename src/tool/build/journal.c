@@ -67,7 +67,7 @@ bp_status journal_read(const struct journal *journal, uint64_t offset, uint8_t *
 	if (!status)
 		status = get(journal->fd, record, record_bytes, offset, error);
 	if (!status && (load_u32(head + 4) != record_bytes || load_u32(head + 8) != entry_crc(head, record, record_bytes)))
-		status = error_set(error, BP_ERROR_CHECKSUM, BP_NO_OFFSET,
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, /* no archive is damaged, and `recover` is no remedy */
 		                   "the finished records beside it have changed while it ran; has another build the same output?");
 	return status;
 }

@@ -60,7 +60,7 @@ bp_status journal_open(const char *output, const struct fit_options *options, bo
 /* Appends; *offset is where the record begins. */
 bp_status journal_add(struct journal *journal, const uint8_t *record, size_t record_bytes, uint64_t *offset, bp_error *error);
 
-/* Reads a record back, and checks its CRC32. */
+/* Reads a record back, and checks its CRC32. BP_ERROR_IO also where that differs. */
 bp_status journal_read(const struct journal *journal, uint64_t offset, uint8_t *record, uint32_t record_bytes, bp_error *error);
 
 /* The latest of this name that was found; NULL: none. */

@@ -55,7 +55,8 @@ static int build_main(const struct command *self, int argc, char **argv)
 		.fit = {.profile = PROFILE_SPECTRAL},
 		.workers = cores_usable(),
 	};
-	int64_t budget = 0, effort = EFFORT_USUAL;
+	int64_t budget = 0;
+	uint32_t effort = EFFORT_USUAL;
 	const struct option_rule rules[] = {
 		{"output", 'o', option_text, .to = &options.output},
 		{"jobs", 'j', option_jobs, .to = &options.workers},

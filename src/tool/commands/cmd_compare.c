@@ -224,7 +224,7 @@ static int compare_main(const struct command *self, int argc, char **argv)
 {
 	struct compare compare = {.workers = cores_usable()};
 	enum lighting lighting = LIGHTING_COUNT;
-	int64_t size = SPHERE_SIZE;
+	uint32_t size = SPHERE_SIZE;
 	const struct option_rule rules[] = {{"light", 0, option_light, .to = &lighting},
 	                                    {"size", 0, option_integer, &size, 1, COMPARE_SIZE_MAX},
 	                                    {"json", 0, option_flag, .to = &compare.report.json},
@@ -244,7 +244,7 @@ static int compare_main(const struct command *self, int argc, char **argv)
 		return EXIT_FAILED;
 	compare.job = (struct compare_job){.archive = compare.selection.archive,
 	                                   .images = compare.images != NULL,
-	                                   .plans = {.lightings = compare.report.lightings, .size = (uint32_t)size}};
+	                                   .plans = {.lightings = compare.report.lightings, .size = size}};
 	code = EXIT_FAILED;
 	if (compare.selection.count > 0)
 		code = materials_compare(&compare);

@@ -211,7 +211,8 @@ static bool format_take(const struct command *self, const struct option_rule *ru
 /* What belongs together on the command line. */
 struct wishes {
 	const struct format *format;
-	const char *folder, *size; /* as written, or NULL */
+	const char *folder;
+	int64_t size; /* bytes; 0: not given */
 	bool plain, spectral, force;
 };
 
@@ -221,22 +222,20 @@ static int wishes_take(const struct command *self, const struct wishes *wishes, 
 	const struct format *format = wishes->format;
 	const bool exports = format->form == FORM_EXPORT;
 	const uint64_t least = exports ? export_bytes_least(format->export, wishes->spectral) : 0;
-	int64_t most = exports ? (int64_t)export_bytes_usual(format->export, wishes->spectral) : 0;
+	const uint64_t usual = exports ? export_bytes_usual(format->export, wishes->spectral) : 0;
+	const uint64_t most = wishes->size ? (uint64_t)wishes->size : usual;
 	if (wishes->plain && format->form != FORM_MERL)
 		return report_usage(self, "--plain is about MERL files, --format %s writes none", format->name);
 	if (wishes->spectral && !(exports && format->export == EXPORT_BSDF))
 		return report_usage(self, "--spectral is about --format bsdf");
 	if (wishes->size && !exports)
 		return report_usage(self, "--size is about --format bsdf and --format mbsdf");
-	if (wishes->size &&
-	    !option_bytes(self, &(const struct option_rule){"size", 0, option_bytes, &most, 1, EXPORT_BYTES_MAX}, wishes->size))
-		return EXIT_USAGE;
-	if (exports && (uint64_t)most < least)
+	if (exports && most < least)
 		return report_usage(
-			self, "--size: %" PRId64 " bytes are too few for --format %s%s; %" PRIu64 " are enough for its smallest file", most,
+			self, "--size: %" PRIu64 " bytes are too few for --format %s%s; %" PRIu64 " are enough for its smallest file", most,
 			format->name, wishes->spectral ? " --spectral" : "", least);
 	out->form = wishes->plain ? FORM_PLAIN : format->form;
-	out->export = (struct export_options){format->export, wishes->spectral, (uint64_t)most};
+	out->export = (struct export_options){format->export, wishes->spectral, most};
 	return EXIT_OK;
 }
 
@@ -250,7 +249,7 @@ static int extract_main(const struct command *self, int argc, char **argv)
 	                                    {"force", 0, option_flag, .to = &wishes.force},
 	                                    {"any-lattice", 0, option_flag, .to = &extraction.room.any_lattice},
 	                                    {"spectral", 0, option_flag, .to = &wishes.spectral},
-	                                    {"size", 0, option_text, .to = &wishes.size},
+	                                    {"size", 0, option_bytes, &wishes.size, 1, EXPORT_BYTES_MAX},
 	                                    {0}};
 	int code = options_read(self, argc, argv, rules);
 	if (code != OPTIONS_END)

@@ -52,12 +52,11 @@ static int merge_main(const struct command *self, int argc, char **argv)
 {
 	struct copy_options options = {.stop = interrupt_came};
 	bool quiet = false, force = false;
-	int64_t expected = 0;
 	bp_error error;
 	const struct option_rule rules[] = {{"output", 'o', option_text, .to = &options.output},
 	                                    {"quiet", 'q', option_flag, .to = &quiet},
 	                                    {"replace", 0, option_flag, .to = &options.replace},
-	                                    {"expect", 0, option_integer, &expected, 1, 65536},
+	                                    {"expect", 0, option_integer, &options.shards, 1, 65536},
 	                                    {"force", 0, option_flag, .to = &force},
 	                                    {0}};
 	int code = options_read(self, argc, argv, rules);
@@ -69,14 +68,13 @@ static int merge_main(const struct command *self, int argc, char **argv)
 		return report_usage(self, "no archive");
 
 	const size_t count = (size_t)(argc - optind);
-	if (expected && (uint64_t)expected != count) {
-		report_text("%s: not written: %" PRId64 " shards are expected, %zu archive%s given", options.output, expected, count,
-		            count == 1 ? " is" : "s are");
+	if (options.shards && options.shards != count) {
+		report_text("%s: not written: %" PRIu32 " shards are expected, %zu archive%s given", options.output, options.shards,
+		            count, count == 1 ? " is" : "s are");
 		return EXIT_FAILED;
 	}
 	if (!output_check(options.output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, count))
 		return EXIT_FAILED;
-	options.shards = (uint32_t)expected;
 	files_allow(count);
 	bp_archive **archives = calloc(count, sizeof *archives);
 	if (!archives) {

@@ -64,18 +64,16 @@ static int material_render(const struct render_options *options, const struct ma
 
 static int render_main(const struct command *self, int argc, char **argv)
 {
-	struct render_options options = {.lighting = LIGHTING_KEY};
+	struct render_options options = {.lighting = LIGHTING_KEY, .size = SPHERE_SIZE};
 	struct material material;
-	int64_t size = SPHERE_SIZE;
 	const struct option_rule rules[] = {{"light", 0, option_light, .to = &options.lighting},
-	                                    {"size", 0, option_integer, &size, 1, SPHERE_SIZE_MAX},
+	                                    {"size", 0, option_integer, &options.size, 1, SPHERE_SIZE_MAX},
 	                                    {"output", 'o', option_text, .to = &options.output},
 	                                    {"force", 0, option_flag, .to = &options.force},
 	                                    {0}};
 	int code = options_read(self, argc, argv, rules);
 	if (code != OPTIONS_END)
 		return code;
-	options.size = (uint32_t)size;
 	if (!option_picture(self, options.output, ".pfm", &options.pfm))
 		return EXIT_USAGE;
 	if (optind < argc && !output_check(options.output, OUTPUT_KIND_PICTURE, options.force, (const char *const *)argv + optind, 1))

@@ -13,7 +13,9 @@ static const double COSINE_LEAST = 1e-4;
 /* A value beyond the horizon goes on by at most so many times the one before it. */
 static const double BEYOND_MOST = 2;
 /* Readers divide by a slice's sum: one that is darker all over is sampled evenly. */
-static const float LUMINANCE_LEAST = 1e-20f;
+static const double LUMINANCE_LEAST = 1e-20;
+/* Of a slice's mean: no place is darker. Readers' floats make of a 0 a density of some -1e-9, and weights of millions. */
+static const double LUMINANCE_FLOOR = 1e-4;
 /* theta_i grows with this power: closer nodes towards the horizon, where lobes change fastest. */
 static const double ANGLES_POWER = 0.8;
 
@@ -117,14 +119,16 @@ static bool slice_fill(struct warped *warped, uint32_t angle, const struct pairs
 static void luminance_fill(struct warped *warped, uint32_t angle)
 {
 	const size_t points = (size_t)warped->shape.size * warped->shape.size;
-	float *luminance = warped->luminance + angle * points, brightest = 0;
+	float *luminance = warped->luminance + angle * points;
 	const float *rgb = warped->rgb + angle * 3 * points;
+	double sum = 0;
 	for (size_t n = 0; n < points; n++) {
-		luminance[n] = fmaxf((rgb[n] + rgb[points + n] + rgb[2 * points + n]) / 3, 0);
-		brightest = fmaxf(brightest, luminance[n]);
+		luminance[n] = (float)fmax(((double)rgb[n] + rgb[points + n] + rgb[2 * points + n]) / 3, 0);
+		sum += (double)luminance[n];
 	}
-	for (size_t n = 0; brightest < LUMINANCE_LEAST && n < points; n++)
-		luminance[n] = 1;
+	const float least = (float)(LUMINANCE_FLOOR * sum / (double)points);
+	for (size_t n = 0; n < points; n++)
+		luminance[n] = sum < LUMINANCE_LEAST ? 1 : fmaxf(luminance[n], least);
 }
 
 static bp_status slices_make(const struct reflectance *reflectance, struct warped *warped, bp_error *error)
