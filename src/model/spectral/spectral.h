@@ -51,7 +51,7 @@ struct spectral_model {
 	struct spectral_weights weights;
 	float *coefficient[3]; /* fitted: spectra of the three fields, divided by the weights' factors; NULL when decoded */
 	float limit;           /* rows of phi_d are cut there (spans.h); 0: they are whole */
-	bool noisy;            /* fitted: noise was found and drawn towards 0 */
+	float noise;           /* fitted: level of the noise that was found and drawn towards 0 (spectral_denoise); 0: none */
 
 	float step; /* decoded, as all that follows */
 	float centre
@@ -86,8 +86,18 @@ uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end
 /* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
 float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest);
 
-/* spectral_denoise.c: draws coefficients that noise alone would explain towards 0; sets *noisy where there was any. span: of the rows (spans.h), or NULL. */
-bp_status spectral_denoise(struct lattice_dims dims, const uint16_t *span, float *coefficient, bool *noisy, bp_error *error);
+/*
+ * spectral_denoise.c: draws coefficients that noise alone would explain towards 0, in the spectra of the three fields. *level: the noise's
+ * standard deviation, in log2 units, which three quarters of the whole rows are below, the largest of the fields; 0 where there is too little
+ * for anything to be done.
+ */
+bp_status spectral_denoise(struct spectrum *spectrum, struct lattice_dims dims, const struct watch *watch, float *const field[3],
+                           float *level, bp_error *error);
+
+/* spectral_rank.c: coefficients that a record of so many bytes has room for. */
+double spectral_places(double budget_bytes);
+/* The size above which there are about `count` of the coefficients [rows][lanes], by a look at every so-manieth row. */
+float spectral_size_of_rank(const float *coefficient, size_t rows, size_t lanes, size_t every, double count);
 
 /*
  * spectral_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of

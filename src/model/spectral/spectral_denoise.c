@@ -4,22 +4,26 @@
  *     kept = c max(0, 1 - LAMBDA sigma^2 / mean square of the coefficients around c)
  *
  * The noise is estimated from the table itself, by medians of the finest diagonal band, in which smooth materials
- * have next to nothing: sigma = scale(theta_d) * factor(harmonic). theta_d, because measurements grow noisy towards
- * grazing angles; harmonics, because faults that are constant along phi_d are in the first one only. An orthonormal transform
+ * have next to nothing: sigma = scale(theta_d) * factor(harmonic), because measurements grow noisy towards grazing angles. Faults that are
+ * constant along phi_d are in the first harmonic only, and do not: there sigma^2 = scale(theta_d)^2 + streak^2. An orthonormal transform
  * spreads white noise evenly over its bands, so the estimate serves all of them. It is made where rows are whole: what is cut has
  * fewer coefficients, and its noise is that of grazing light.
+ *
+ * All of it is done to the spectrum of the turned table too (spectrum_turn.h); the mean of both is what is kept.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
 #include "spans.h"
 #include "spectral.h"
 #include "model/math/fast_math.h"
 #include "spectral_kernels.h"
 #include "model/math/select.h"
-#include "spectrum.h"
+#include "spectrum_turn.h"
+#include "watch.h"
 
 enum { LANES = 16 };
 
@@ -29,11 +33,13 @@ static const float NOISE_LEAST = 0.008f;    /* in log2 units: below this sigma n
 
 struct noise {
 	float *scale;  /* per theta_d column of the finest bands */
-	float *factor; /* per lane; squared, once all is known */
+	float *factor; /* per lane; squared, once all is known; lane 0: of the column at hand */
+	float streak;  /* squared: what the first harmonic has besides, in every column */
+	float level;   /* three quarters of the scales are below; 0: nothing is done */
 };
 
-/* Of sizes >= 0; few: room for as many of them. */
-static double median(const float *size, size_t n, double *few)
+/* The one that `rank` of n sizes >= 0 are below; few: room for as many of them. */
+static double size_of_rank(const float *size, size_t n, size_t rank, double *few)
 {
 	enum { SHIFT = 20, BINS = 1 << (31 - SHIFT) }; /* eight to the octave */
 	uint32_t bins[BINS] = {0}, bin = 0;
@@ -43,13 +49,15 @@ static double median(const float *size, size_t n, double *few)
 		return 0;
 	for (size_t i = 0; i < n; i++)
 		bins[bits_of_float(size[i]) >> SHIFT]++;
-	while (below + bins[bin] <= n / 2)
+	while (below + bins[bin] <= rank)
 		below += bins[bin++];
 	for (size_t i = 0; i < n; i++)
 		if (bits_of_float(size[i]) >> SHIFT == bin)
 			few[kept++] = (double)size[i];
-	return select_kth(few, kept, n / 2 - below);
+	return select_kth(few, kept, rank - below);
 }
+
+static double median(const float *size, size_t n, double *few) { return size_of_rank(size, n, n / 2, few); }
 
 /* Is the row in whose middle the detail (y, x) of the finest diagonal band lies a whole one? span: NULL where all are. */
 static bool detail_whole(struct lattice_dims d, const uint16_t *span, uint32_t y, uint32_t x)
@@ -99,8 +107,26 @@ static void factor_estimate(struct lattice_dims d, const uint16_t *span, const f
 	}
 }
 
-/* False where there is so little noise that nothing is done. */
-static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, const float *c, struct noise *noise, bool *noisy,
+/* The level, and the streaks: by how much the first harmonic's noise is above it. */
+static void streak_estimate(struct lattice_dims d, const uint16_t *span, const float *band, uint32_t rows, uint32_t columns,
+                            float *sample, double *few, struct noise *noise)
+{
+	float *scale = sample + (size_t)rows * columns;
+	size_t n = 0;
+
+	for (uint32_t y = 0; y < rows; y++)
+		for (uint32_t x = 0; x < columns; x++) {
+			if (!detail_whole(d, span, y, x))
+				continue;
+			sample[n] = fabsf(band[((size_t)y * d.theta_d + x) * d.phi_d]);
+			scale[n++] = noise->scale[x];
+		}
+	const double first = median(sample, n, few) / NORMAL_MEDIAN, white = median(scale, n, few);
+	noise->streak = (float)fmax(first * first - white * white, 0);
+	noise->level = (float)size_of_rank(scale, n, n / 4 * 3, few);
+}
+
+static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, const float *c, struct noise *noise,
                                 bp_error *error)
 {
 	const uint32_t rows = d.theta_h / 2, columns = d.theta_d / 2;
@@ -117,9 +143,13 @@ static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, con
 	scale_estimate(d, span, band, rows, columns, sample, few, noise->scale);
 	for (uint32_t x = 0; x < columns; x++)
 		largest = noise->scale[x] > largest ? noise->scale[x] : largest;
-	*noisy = largest >= NOISE_LEAST;
-	if (*noisy)
+	noise->level = 0;
+	if (largest >= NOISE_LEAST) {
 		factor_estimate(d, span, band, rows, columns, sample, few, noise);
+		streak_estimate(d, span, band, rows, columns, sample, few, noise);
+		for (uint32_t q = 0; q < d.phi_d; q++)
+			noise->factor[q] *= noise->factor[q];
+	}
 	free(sample);
 	free(few);
 	return BP_OK;
@@ -160,7 +190,7 @@ static void squares_fill(struct lattice_dims d, const float *c, struct rectangle
 	memset(out + ((size_t)band.columns + 1) * (d.phi_d + 2), 0, (d.phi_d + 2) * sizeof *out);
 }
 
-static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, const struct noise *noise,
+static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, struct noise *noise,
                         struct squares *squares)
 {
 	const struct spectral_kernels *kernels = spectral_kernels_get();
@@ -177,6 +207,7 @@ static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, 
 			const float sigma = noise->scale[(uint64_t)x * columns / band.columns];
 			const int count = high * (1 + (x > 0) + (x + 1 < band.columns)) + 1; /* the two halves */
 			const size_t at = (size_t)x * (p + 2) + 1;
+			noise->factor[0] = 1 + noise->streak / (sigma * sigma);
 			const float *const around[3] = {row[0] + at, row[1] + at, row[2] + at};
 			kernels->spectral_shrink(c + ((size_t)(band.row + y) * d.theta_d + band.column + x) * p, around, (size_t)p + 2,
 			                         noise->factor, LAMBDA * sigma * sigma * (float)count, p);
@@ -184,36 +215,80 @@ static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, 
 	}
 }
 
-bp_status spectral_denoise(struct lattice_dims d, const uint16_t *span, float *coefficient, bool *noisy, bp_error *error)
+/* The coarsest band is kept as it is. */
+static void spectrum_shrink(struct lattice_dims d, float *c, struct noise *noise, struct squares *squares)
 {
-	struct noise noise = {calloc(d.theta_d, sizeof(float)), calloc(d.phi_d, sizeof(float))};
-	struct squares squares = {0};
-	bool here = false;
+	uint32_t rows = d.theta_h, columns = d.theta_d;
+
+	for (uint32_t l = spectrum_levels(rows, columns); l > 0; l--) {
+		const uint32_t high = (rows + 1) / 2, wide = (columns + 1) / 2;
+		band_shrink(d, c, (struct rectangle){0, wide, high, columns - wide}, noise, squares);
+		band_shrink(d, c, (struct rectangle){high, 0, rows - high, wide}, noise, squares);
+		band_shrink(d, c, (struct rectangle){high, wide, rows - high, columns - wide}, noise, squares);
+		rows = high;
+		columns = wide;
+	}
+}
+
+/* What is needed once noise has been found. */
+struct denoiser {
+	struct squares squares;
+	struct spectrum_turn *turn;
+	float *turned;
+};
+
+static bp_status denoiser_create(struct spectrum *spectrum, struct lattice_dims d, struct denoiser *out, bp_error *error)
+{
+	const size_t bytes = lattice_cells(d) * sizeof(float);
+	bp_status status = squares_alloc(d, &out->squares, error);
+
+	if (!status)
+		status = spectrum_turn_create(spectrum, d, &out->turn, error);
+	if (status)
+		return status;
+	out->turned = memory_alloc(bytes);
+	return out->turned ? BP_OK : error_memory(error, bytes);
+}
+
+static void field_shrink(struct denoiser *denoiser, struct lattice_dims d, float *c, struct noise *noise)
+{
+	const size_t cells = lattice_cells(d), columns = d.theta_d / 2;
+	float *turned = denoiser->turned;
+
+	spectrum_turned(denoiser->turn, c, turned);
+	spectrum_shrink(d, c, noise, &denoiser->squares);
+	for (size_t x = 0; x < columns / 2; x++) {
+		const float scale = noise->scale[x];
+		noise->scale[x] = noise->scale[columns - 1 - x];
+		noise->scale[columns - 1 - x] = scale;
+	}
+	spectrum_shrink(d, turned, noise, &denoiser->squares);
+	spectrum_turned(denoiser->turn, turned, turned);
+	for (size_t i = 0; i < cells; i++)
+		c[i] = 0.5f * (c[i] + turned[i]);
+}
+
+bp_status spectral_denoise(struct spectrum *spectrum, struct lattice_dims d, const struct watch *watch, float *const field[3],
+                           float *level, bp_error *error)
+{
+	struct noise noise = {.scale = calloc(d.theta_d, sizeof(float)), .factor = calloc(d.phi_d, sizeof(float))};
+	struct denoiser denoiser = {.turn = NULL};
 	bp_status status = noise.scale && noise.factor ? BP_OK : error_memory(error, d.phi_d * sizeof(float));
 
-	if (status || !spectrum_levels(d.theta_h, d.theta_d))
-		goto out;
-	status = noise_estimate(d, span, coefficient, &noise, &here, error);
-	if (status || !here)
-		goto out;
-	status = squares_alloc(d, &squares, error);
-	if (status)
-		goto out;
-	for (uint32_t q = 0; q < d.phi_d; q++)
-		noise.factor[q] *= noise.factor[q];
-	/* The coarsest band is kept as it is. */
-	uint32_t rows = d.theta_h, columns = d.theta_d;
-	for (uint32_t l = spectrum_levels(rows, columns); l > 0; l--) {
-		const uint32_t r = (rows + 1) / 2, c = (columns + 1) / 2;
-		band_shrink(d, coefficient, (struct rectangle){0, c, r, columns - c}, &noise, &squares);
-		band_shrink(d, coefficient, (struct rectangle){r, 0, rows - r, c}, &noise, &squares);
-		band_shrink(d, coefficient, (struct rectangle){r, c, rows - r, columns - c}, &noise, &squares);
-		rows = r;
-		columns = c;
+	*level = 0;
+	for (int f = 0; f < 3 && !status && spectrum_levels(d.theta_h, d.theta_d); f++) {
+		status = watch_tell(watch, 0.4 + 0.05 * f, error);
+		if (!status)
+			status = noise_estimate(d, spectrum_spans(spectrum), field[f], &noise, error);
+		if (!status && noise.level > 0 && !denoiser.turned)
+			status = denoiser_create(spectrum, d, &denoiser, error);
+		if (!status && noise.level > 0)
+			field_shrink(&denoiser, d, field[f], &noise);
+		*level = noise.level > *level ? noise.level : *level;
 	}
-	*noisy = true;
-out:
-	free(squares.block);
+	free(denoiser.squares.block);
+	spectrum_turn_free(denoiser.turn);
+	free(denoiser.turned);
 	free(noise.scale);
 	free(noise.factor);
 	return status;

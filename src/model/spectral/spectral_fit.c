@@ -164,7 +164,7 @@ static void spectra_make(struct lattice_dims d, struct spectrum *spectrum, const
 }
 
 /* Spectra of channels become those of fields. */
-static bp_status fields_make(struct lattice_dims d, const uint16_t *span, const int order[3], const float rotation[3][3],
+static bp_status fields_make(struct lattice_dims d, struct spectrum *spectrum, const int order[3], const float rotation[3][3],
                              bool denoise, const struct watch *watch, struct spectral_model *fitted, bp_error *error)
 {
 	const size_t rows = (size_t)d.theta_h * d.theta_d;
@@ -179,10 +179,8 @@ static bp_status fields_make(struct lattice_dims d, const uint16_t *span, const 
 		for (int k = 0; k < 3; k++)
 			fitted->rotation[f][order[k]] = rotation[f][k];
 	stage_enter(STAGE_CLEAN);
-	for (int f = 0; !status && f < 3 && denoise; f++) {
-		status = watch_tell(watch, 0.4 + 0.05 * f, error);
-		status = status ? status : spectral_denoise(d, span, fitted->coefficient[f], &fitted->noisy, error);
-	}
+	if (denoise)
+		status = spectral_denoise(spectrum, d, watch, fitted->coefficient, &fitted->noise, error);
 	return status;
 }
 
@@ -207,8 +205,18 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 	if (status)
 		return status;
 	spectra_make(lattice->dims, spectrum, order, fitted, rotation);
-	return fields_make(lattice->dims, spectrum_spans(spectrum), order, (const float(*)[3])rotation, true, options->watch, fitted,
+	return fields_make(lattice->dims, spectrum, order, (const float(*)[3])rotation, true, options->watch, fitted,
 	                   error);
+}
+
+static const float SMALLEST_LEVEL = 0.8f; /* in steps, in the mean, of what is not coded as 0 */
+
+/* By how much the step that a record of this size would have without weights is coarser than the noise. */
+static float even_step_octaves(const struct spectral_model *fitted, double budget_bytes)
+{
+	const size_t rows = 3 * (size_t)fitted->dims.theta_h * fitted->dims.theta_d; /* the fields' tables lie one behind the other */
+	const float least = spectral_size_of_rank(fitted->coefficient[0], rows, fitted->dims.phi_d, 3, spectral_places(budget_bytes));
+	return fast_log2f(least / (SMALLEST_LEVEL * fitted->noise));
 }
 
 /* The last step: coefficients as they are quantised. */
@@ -294,12 +302,11 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		spectra_make(d, spectrum, order, fitted, rotation);
 	if (!status)
 		status =
-			fields_make(d, spectrum_spans(spectrum), order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
-	if (!status && project && !fitted->noisy && seen.valid_count < cells)
+			fields_make(d, spectrum, order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
+	if (!status && project && !(fitted->noise > 0) && seen.valid_count < cells)
 		status = fields_improve(&seen, options, spectrum, order, filled, fitted, error);
-	/* Where noise is drawn towards 0, even steps do as well by what is under it (VARIANTS.md). */
-	if (fitted->noisy)
-		memset(fitted->weights.weight, 0, sizeof fitted->weights.weight);
+	if (!status && fitted->noise > 0)
+		spectral_weights_ease(&fitted->weights, even_step_octaves(fitted, options->budget_bytes));
 	if (!status && !bound)
 		status = weights_divide(fitted, error);
 	free(counted);

@@ -15,12 +15,6 @@
 #include "model/math/fast_math.h"
 #include "spectrum_rows.h"
 
-enum {
-	BIN_SHIFT = 19, /* of a float's bits: 16 bins to the octave */
-	BINS = 1 << (31 - BIN_SHIFT),
-};
-static const double BITS_EACH = 4.3; /* of a record, for each coefficient that is not 0: 3.8 to 4.9 on surrogates */
-
 struct projection {
 	struct lattice_dims dims;
 	struct spectrum_inverse *inverse;
@@ -64,20 +58,6 @@ static void projection_free(struct projection *p)
 	spectrum_inverse_free(p->inverse);
 }
 
-/* The size above which there are about `count` coefficients. */
-static float size_of_rank(const float *coefficient, size_t cells, double count)
-{
-	uint32_t bins[BINS] = {0};
-	double above = 0;
-	uint32_t bin = BINS;
-
-	for (size_t i = 0; i < cells; i++)
-		bins[(bits_of_float(coefficient[i]) & 0x7fffffff) >> BIN_SHIFT]++;
-	while (bin > 1 && above + bins[bin - 1] <= count)
-		above += bins[--bin];
-	return float_of_bits(bin << BIN_SHIFT < 0x7f800000 ? bin << BIN_SHIFT : 0x7f7fffff);
-}
-
 /* One step on one channel's table. */
 static bp_status channel_project(const struct projection *p, const uint8_t *valid, float base, float threshold, float *table,
                                  bp_error *error)
@@ -109,9 +89,10 @@ bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, con
                            float *const table[3], bp_error *error)
 {
 	const size_t cells = lattice_cells(d);
-	const double wanted = fmin(budget_bytes * 8 / BITS_EACH / 4, (double)cells); /* of one channel, which are much alike */
+	const size_t rows = (size_t)d.theta_h * d.theta_d;
+	const double wanted = spectral_places(budget_bytes) / 4; /* of one channel, which are much alike */
 	struct projection p;
-	bp_status status = projection_create(d, weights, limit, (uint32_t)fmin(wanted * 2, (double)cells), &p, error);
+	bp_status status = projection_create(d, weights, limit, (uint32_t)fmin(fmin(wanted, (double)cells) * 2, (double)cells), &p, error);
 
 	for (int c = 0; !status && c < 3; c++)
 		for (int s = 0; !status && s < steps; s++) {
@@ -119,7 +100,7 @@ bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, con
 			spectrum_forward(spectrum, p.spectrum, base[c]);
 			spectral_factors_divide(d, &p.factors, p.spectrum);
 			/* Four times the last threshold at first where there are steps enough. */
-			const float last = size_of_rank(p.spectrum, cells, wanted);
+			const float last = spectral_size_of_rank(p.spectrum, rows, d.phi_d, 1, wanted);
 			const double factor = steps > 1 ? fast_exp2(2.0 * (steps - 1 - s) / (steps - 1)) : 1;
 			status = channel_project(&p, valid, base[c], last * (float)factor, table[c], error);
 		}

@@ -12,6 +12,8 @@
 enum { GRADED_STEPS = 3 };
 static const float GRADE[GRADED_STEPS] = {9 / 16.0f, 3 / 16.0f, 1 / 16.0f};
 
+static const float EASE_FROM = 0.5f, EASE_OCTAVES = 3; /* VARIANTS.md, "Noise" */
+
 /* Where coefficient i of an axis of n cells lies, in edges of regions from the first one's centre; `level` as in rows_fill. */
 static float place(uint32_t n, uint32_t i, uint32_t level, uint32_t levels, float edge)
 {
@@ -55,6 +57,13 @@ static void harmonics_fill(uint32_t p, bool graded, float *factor)
 {
 	for (uint32_t m = 0; m < p; m++)
 		factor[m] = graded ? (float)sqrt(3 / (2 + cosines_exact(2 * m, p))) : 1;
+}
+
+void spectral_weights_ease(struct spectral_weights *weights, float octaves)
+{
+	const float share = fminf(fmaxf((octaves - EASE_FROM) / EASE_OCTAVES, 0), 1);
+	for (int r = 0; r < SPECTRAL_WEIGHTS; r++)
+		weights->weight[r] = (uint8_t)(share * (float)weights->weight[r] + 0.5f);
 }
 
 bp_status spectral_factors_create(struct lattice_dims d, const struct spectral_weights *weights, struct spectral_factors *out,

@@ -82,18 +82,23 @@ static void rows_forward(struct spectrum *t, float *table, float base)
 	}
 }
 
-void spectrum_forward(struct spectrum *t, float *table, float base)
+void spectrum_wavelets(struct spectrum *t, float *harmonics)
 {
 	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const size_t p = t->dims.phi_d, slice = t->dims.theta_d * p;
 	size_t rows = t->dims.theta_h, columns = t->dims.theta_d;
 
-	rows_forward(t, table, base);
 	for (uint32_t l = 0; l < t->levels; l++) {
 		for (size_t i = 0; i < rows; i++)
-			kernels->cdf97_forward(table + i * slice, columns, p, p, t->scratch);
-		kernels->cdf97_forward(table, rows, slice, columns * p, t->scratch);
+			kernels->cdf97_forward(harmonics + i * slice, columns, p, p, t->scratch);
+		kernels->cdf97_forward(harmonics, rows, slice, columns * p, t->scratch);
 		rows = (rows + 1) / 2;
 		columns = (columns + 1) / 2;
 	}
+}
+
+void spectrum_forward(struct spectrum *t, float *table, float base)
+{
+	rows_forward(t, table, base);
+	spectrum_wavelets(t, table);
 }

@@ -53,4 +53,7 @@ static inline uint32_t spectrum_harmonic(uint32_t phi_d, uint32_t lane)
 /* Of table - base, in place. The inverse: spectrum_inverse.h; where rows are cut, spectrum_rows.h. */
 void spectrum_forward(struct spectrum *spectrum, float *table, float base);
 
+/* The wavelets alone, in place: of harmonics [theta_h][theta_d][lane]. */
+void spectrum_wavelets(struct spectrum *spectrum, float *harmonics);
+
 #endif
