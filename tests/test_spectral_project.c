@@ -136,9 +136,35 @@ static void a_table_without_a_hole_is_left_alone(void **unused)
 	free(block);
 }
 
+/* Four each of 1, 2, 4, ... 32, with either sign: the size is a bin's end, right above the largest that there is no room for. */
+static void the_size_of_a_rank_leaves_as_many_above(void **unused)
+{
+	static const struct {
+		size_t every;
+		double count;
+		float size;
+	} RANKS[] = {{1, 3, 34},
+	             {1, 4, 17},
+	             {1, 8, 8.5f},
+	             {1, 11, 8.5f},
+	             {1, 12, 4.25f},
+	             /* Rows 1 and 4 of the six, of 2 and 16, stand for three each. */
+	             {3, 11, 17},
+	             {3, 12, 2.125f},
+	             {3, 23, 2.125f}};
+	float coefficient[6 * 4];
+	(void)unused;
+	for (int n = 0; n < 24; n++)
+		coefficient[n] = (float)(n % 2 ? -1 : 1) * ldexpf(1, n / 4);
+	for (size_t n = 0; n < sizeof RANKS / sizeof *RANKS; n++)
+		assert_true(spectral_size_of_rank(coefficient, 6, 4, RANKS[n].every, RANKS[n].count) == RANKS[n].size);
+	assert_true(spectral_places(4.3) == 8);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(the_size_of_a_rank_leaves_as_many_above),
 		cmocka_unit_test(what_a_record_cannot_hold_becomes_less_and_valid_cells_stay),
 		cmocka_unit_test(a_table_made_while_it_is_filled_becomes_what_one_made_before_does),
 		cmocka_unit_test(a_table_without_a_hole_is_left_alone),

@@ -42,6 +42,23 @@ static void details_and_high_harmonics_have_coarser_steps(void **state)
 	spectral_factors_free(&factors);
 }
 
+/* Shares of 0, 0, a half, five sixths, 1 and 1 of weights 7 and 40. */
+static void noise_eases_weights(void **state)
+{
+	static const struct {
+		float octaves;
+		uint8_t seven, forty;
+	} EASED[] = {{-3, 0, 0}, {0.5f, 0, 0}, {2, 4, 20}, {3, 6, 33}, {3.5f, 7, 40}, {20, 7, 40}};
+	(void)state;
+	for (size_t n = 0; n < sizeof EASED / sizeof *EASED; n++) {
+		struct spectral_weights weights = {.graded = true, .weight = {7, 40}};
+		spectral_weights_ease(&weights, EASED[n].octaves);
+		assert_int_equal(weights.weight[0], EASED[n].seven);
+		assert_int_equal(weights.weight[1], EASED[n].forty);
+		assert_int_equal(weights.weight[2], 0);
+	}
+}
+
 static void weights_come_back(void **state)
 {
 	(void)state;
@@ -81,6 +98,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(details_and_high_harmonics_have_coarser_steps),
+		cmocka_unit_test(noise_eases_weights),
 		cmocka_unit_test(weights_come_back),
 		cmocka_unit_test(a_weight_beyond_the_largest_is_refused),
 	};

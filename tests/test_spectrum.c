@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "model/spectral/spectral_kernels.h"
-#include "model/spectral/spectrum.h"
+#include "model/spectral/spectrum_turn.h"
 #include "random_tables.h"
 
 static float *table_random(struct lattice_dims d)
@@ -122,11 +122,42 @@ static void the_levels_leave_at_least_eight_coarse_cells(void **unused)
 	assert_int_equal(spectrum_levels(1024, 1024), SPECTRUM_LEVELS_MAX);
 }
 
+/* Turned, a spectrum is that of the table with its rows in reverse; turned again, it is itself. */
+static void a_turned_spectrum_is_that_of_the_reversed_table(void **unused)
+{
+	(void)unused;
+	for (int n = 0; n < DIMS_COUNT; n++) {
+		const struct lattice_dims d = DIMS[n];
+		const size_t rows = (size_t)d.theta_h * d.theta_d, cells = lattice_cells(d);
+		float *table = table_random(d), *reversed = malloc(cells * sizeof *table), *turned = malloc(cells * sizeof *table);
+		struct spectrum *spectrum = NULL;
+		struct spectrum_turn *turn = NULL;
+		for (size_t r = 0; r < rows; r++)
+			memcpy(reversed + (rows - 1 - r) * d.phi_d, table + r * d.phi_d, d.phi_d * sizeof *table);
+		assert_int_equal(spectrum_create(d, 0, &spectrum, NULL), BP_OK);
+		assert_int_equal(spectrum_turn_create(spectrum, d, &turn, NULL), BP_OK);
+		spectrum_forward(spectrum, table, 0);
+		spectrum_forward(spectrum, reversed, 0);
+		spectrum_turned(turn, table, turned);
+		for (size_t i = 0; i < cells; i++)
+			assert_true(fabsf(turned[i] - reversed[i]) < 2e-5f);
+		spectrum_turned(turn, turned, turned);
+		for (size_t i = 0; i < cells; i++)
+			assert_true(fabsf(turned[i] - table[i]) < 2e-5f);
+		spectrum_turn_free(turn);
+		spectrum_free(spectrum);
+		free(turned);
+		free(reversed);
+		free(table);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_forward_transform_is_the_sum_written_out),
 		cmocka_unit_test(plain_and_avx2_loops_give_the_same_bits),
+		cmocka_unit_test(a_turned_spectrum_is_that_of_the_reversed_table),
 		cmocka_unit_test(the_levels_leave_at_least_eight_coarse_cells),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -126,8 +126,7 @@ static void streak_estimate(struct lattice_dims d, const uint16_t *span, const f
 	noise->level = (float)size_of_rank(scale, n, n / 4 * 3, few);
 }
 
-static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, const float *c, struct noise *noise,
-                                bp_error *error)
+static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, const float *c, struct noise *noise, bp_error *error)
 {
 	const uint32_t rows = d.theta_h / 2, columns = d.theta_d / 2;
 	const float *band = c + ((size_t)(d.theta_h - rows) * d.theta_d + d.theta_d - columns) * d.phi_d;
@@ -190,8 +189,7 @@ static void squares_fill(struct lattice_dims d, const float *c, struct rectangle
 	memset(out + ((size_t)band.columns + 1) * (d.phi_d + 2), 0, (d.phi_d + 2) * sizeof *out);
 }
 
-static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, struct noise *noise,
-                        struct squares *squares)
+static void band_shrink(struct lattice_dims d, float *c, struct rectangle band, struct noise *noise, struct squares *squares)
 {
 	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const uint32_t columns = d.theta_d / 2, p = d.phi_d;

@@ -205,8 +205,7 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 	if (status)
 		return status;
 	spectra_make(lattice->dims, spectrum, order, fitted, rotation);
-	return fields_make(lattice->dims, spectrum, order, (const float(*)[3])rotation, true, options->watch, fitted,
-	                   error);
+	return fields_make(lattice->dims, spectrum, order, (const float(*)[3])rotation, true, options->watch, fitted, error);
 }
 
 static const float SMALLEST_LEVEL = 0.8f; /* in steps, in the mean, of what is not coded as 0 */
@@ -301,8 +300,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	if (!status)
 		spectra_make(d, spectrum, order, fitted, rotation);
 	if (!status)
-		status =
-			fields_make(d, spectrum, order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
+		status = fields_make(d, spectrum, order, (const float(*)[3])rotation, denoise, options->watch, fitted, error);
 	if (!status && project && !(fitted->noise > 0) && seen.valid_count < cells)
 		status = fields_improve(&seen, options, spectrum, order, filled, fitted, error);
 	if (!status && fitted->noise > 0)

@@ -92,7 +92,8 @@ bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims d, con
 	const size_t rows = (size_t)d.theta_h * d.theta_d;
 	const double wanted = spectral_places(budget_bytes) / 4; /* of one channel, which are much alike */
 	struct projection p;
-	bp_status status = projection_create(d, weights, limit, (uint32_t)fmin(fmin(wanted, (double)cells) * 2, (double)cells), &p, error);
+	bp_status status =
+		projection_create(d, weights, limit, (uint32_t)fmin(fmin(wanted, (double)cells) * 2, (double)cells), &p, error);
 
 	for (int c = 0; !status && c < 3; c++)
 		for (int s = 0; !status && s < steps; s++) {
