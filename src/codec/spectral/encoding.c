@@ -144,7 +144,7 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	/* More than foreseen take, at 60,400 and 16,000 bytes, 50 noisy surrogates 1.1 % and 0.0 %, 50 clean ones 0.1 % and 0.5 %. */
 	struct attempt a = {.rate = &rate, .room = room, .bias = e->model->noise > 0 ? 1.01 : 1};
 	double bits = search.aim * room * 8 / rate_each(fmax(room, 1), e->model->noise > 0); /* by rate_bits */
-	float fitting = 0;                                                               /* the step that filled the record best */
+	float fitting = 0; /* the step that filled the record best */
 	uint64_t most = 0;
 
 	rate_measure(e->model, e->planes->dims, &rate);
