@@ -253,6 +253,9 @@ static void expect_need(const bp_archive *archive, size_t need)
 	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_ERROR_LIMIT);
 	assert_null(material);
 	assert_non_null(strstr(error.message, "max_memory_bytes"));
+	options.max_memory_bytes = 1000;
+	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_ERROR_LIMIT);
+	assert_non_null(strstr(error.message, "limit is 0.001 MB"));
 	options.max_memory_bytes = need;
 	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_OK);
 	bp_material_free(material);

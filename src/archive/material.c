@@ -125,7 +125,7 @@ static bp_status need_check(const struct record_head *head, size_t most, bp_erro
 	if (need <= limit)
 		return BP_OK;
 	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-	                 "%s: a table of %u x %u x %u cells may need %.0f MB, the limit is %.0f; max_memory_bytes sets it",
+	                 "%s: a table of %u x %u x %u cells may need %.0f MB, the limit is %.3g MB; max_memory_bytes sets it",
 	                 head->name, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, need / 1e6, limit / 1e6);
 }
 
