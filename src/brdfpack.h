@@ -405,7 +405,8 @@ BP_API void bp_material_nearest(const bp_material *material, const float wi[3], 
 
 /*
  * bp_material_evaluate for `count` pairs in separate arrays of components: wi[0] holds the x of every wi, and so on.
- * The same values to the bit, several times faster from some dozens on. Outputs must not overlap anything else.
+ * The same values to the bit, several times faster from some dozens on. Outputs must not overlap anything else. With a
+ * count of 0 the arrays are not looked at.
  */
 BP_API void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3],
                                        const float *const wo[3], float *const rgb[3]);

@@ -218,7 +218,8 @@ void bp_material_nearest(const bp_material *material, const float wi[3], const f
 void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
                                 float *const rgb[3])
 {
-	table_evaluate_batch(material->table, count, wi, wo, rgb);
+	if (count > 0)
+		table_evaluate_batch(material->table, count, wi, wo, rgb);
 }
 
 float bp_material_sample(const bp_material *material, const float wo[3], const float u[3], float wi[3])
