@@ -176,6 +176,7 @@ install: all $(BUILD)/brdfpack.pc $(addprefix $(BUILD)/,$(CMAKE_FILES))
 	[ ! -f $(BUILD)/viewer/viewer.html ] || { install -d $(SHARE)/brdfpack && install -m 644 $(BUILD)/viewer/viewer.html $(BUILD)/viewer/index.html $(SHARE)/brdfpack/; }
 	install -m 644 src/tool/brdfpack.1 $(SHARE)/man/man1/
 	install -m 644 src/libbrdfpack.3 $(SHARE)/man/man3/
+	$(if $(DESTDIR),,[ "$$(id -u)" != 0 ] || ! command -v ldconfig >/dev/null || ldconfig || :)
 
 uninstall:
 	rm -f $(SHARE)/brdfpack/viewer.html $(SHARE)/brdfpack/index.html

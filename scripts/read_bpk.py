@@ -814,7 +814,7 @@ def command_list(archive):
     for entry in archive.walk():
         record = archive.record(entry)
         print(f"{record.name}  {record.bytes} bytes  profile {record.profile}  {'x'.join(map(str, record.dims))}  "
-              f"{len(record.layers)} layers  log RMSE {record.layers[-1][2]:.6g}  {len(record.sections)} sections"
+              f"{len(record.layers)} layers  log RMSE of all cells {record.layers[-1][2]:.6g}  {len(record.sections)} sections"
               + (f"  from: {record.origin()}" if record.origin() else ""))
 
 

@@ -370,7 +370,7 @@ typedef struct bp_load_options {
 typedef struct bp_loaded {
 	size_t struct_bytes; /* sizeof(bp_loaded), set by the caller */
 	uint32_t layers;     /* of the record's layers */
-	double log_rmse;     /* their recorded error */
+	double log_rmse; /* theirs as in bp_layer, cells below the horizon included: may exceed max_log_rmse, which leaves them out */
 	uint32_t read_bytes; /* of the record: its head and the sections needed */
 	size_t memory_bytes; /* all that the material occupies */
 	bp_form form;
@@ -405,7 +405,8 @@ BP_API void bp_material_nearest(const bp_material *material, const float wi[3], 
 
 /*
  * bp_material_evaluate for `count` pairs in separate arrays of components: wi[0] holds the x of every wi, and so on.
- * The same values to the bit, several times faster from some dozens on. Outputs must not overlap anything else.
+ * The same values to the bit, several times faster from some dozens on. Outputs must not overlap anything else. With a
+ * count of 0 the arrays are not looked at.
  */
 BP_API void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3],
                                        const float *const wo[3], float *const rgb[3]);
@@ -484,7 +485,7 @@ typedef struct bp_pack_options {
 	size_t struct_bytes;      /* sizeof(bp_pack_options) */
 	uint32_t profile;         /* 1: paper, 2 or 0: spectral */
 	uint32_t budget_bytes;    /* largest record, 1000 to 4,000,000; 0: 60,400 */
-	double max_error;         /* > 0, 1e-6 to 10: the smallest record whose log RMSE is at most this, and no budget_bytes */
+	double max_error;         /* > 0, 1e-6 to 10: the smallest record whose log_rmse is at most this, and no budget_bytes */
 	uint32_t effort;          /* 1 to 9; 0: 5 */
 	bp_progress_fn *progress; /* NULL: none */
 	void *user;               /* its first argument */

@@ -16,6 +16,10 @@ make=(make -s "BUILD=$build" "$@")
 cmp "$scratch/plain" "$scratch/staged"
 cat "$scratch/plain"
 
+# the loader is told, but not of an image that is for another place
+"${make[@]}" -n install "PREFIX=$scratch/usr" | grep -q ldconfig
+if "${make[@]}" -n install "DESTDIR=$scratch/image" | grep ldconfig; then exit 1; fi
+
 export PKG_CONFIG_PATH=$scratch/usr/lib/pkgconfig LD_LIBRARY_PATH=$scratch/usr/lib
 archive=$scratch/demo.bpk
 "$scratch/usr/bin/brdfpack" synth --lattice 6x6x8 "$scratch/materials"

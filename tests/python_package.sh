@@ -36,6 +36,9 @@ sed -n '/^```python$/,/^```$/p' "$OLDPWD/README.md" | sed '/^```/d' >lines.py
 "$scratch/venv/bin/python" tree/format-spec/example/sphere.py build/demo/demo.bpk wine-velvet sphere.png
 [ "$(head -c 8 sphere.png | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ]
 [ "$("$scratch/venv/bin/python" -c 'import zlib; d = open("sphere.png", "rb").read(); print(len(set(zlib.decompress(d[41:-16]))) > 100)')" = True ]
+# Mitsuba is not here, and the module that wants it says what to do
+said=$("$scratch/venv/bin/python" -c 'import brdfpack.mitsuba' 2>&1 || true)
+[[ $said == *"pip install mitsuba"* ]]
 
 # the source distribution has all that it wants, and the version of the header
 sdist=("$scratch"/sdist/brdfpack-*.tar.gz)

@@ -104,6 +104,7 @@ static void a_loaded_material_gives_what_its_decoded_table_gives(void **state)
 				table_evaluate(table, wi, wo, want);
 				assert_memory_equal(got, want, sizeof got);
 			}
+			bp_material_evaluate_batch(material, 0, NULL, NULL, NULL); /* nothing is looked at */
 			bp_material_free(material);
 			model_free(model);
 			expansion_free(&expansion);
@@ -253,6 +254,9 @@ static void expect_need(const bp_archive *archive, size_t need)
 	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_ERROR_LIMIT);
 	assert_null(material);
 	assert_non_null(strstr(error.message, "max_memory_bytes"));
+	options.max_memory_bytes = 1000;
+	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_ERROR_LIMIT);
+	assert_non_null(strstr(error.message, "limit is 0.001 MB"));
 	options.max_memory_bytes = need;
 	assert_int_equal(bp_material_load(archive, 0, &options, &material, &error), BP_OK);
 	bp_material_free(material);

@@ -144,6 +144,17 @@ static void headers_other_than_90_90_180_are_refused_with_what_was_found(void **
 	expect_refusal(&image, true, "not a MERL file");
 }
 
+static void numbers_of_another_machine_or_of_half_the_size_are_told(void **state)
+{
+	(void)state;
+	struct image image = image_make(4, 4, 4);
+	memcpy(image.bytes, "\0\0\0\132\0\0\0\132\0\0\0\264", 12); /* 90 90 180 */
+	expect_refusal(&image, false, "big-endian");
+	image = image_make(4, 4, 4);
+	image.count = 12 + (image.count - 12) / 2;
+	expect_refusal(&image, true, "truncated: expected 1548 bytes, found 780, as many as values of 4 bytes take");
+}
+
 static void truncation_at_any_byte_is_told_with_expected_and_found(void **state)
 {
 	(void)state;
@@ -342,6 +353,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_lattice_is_scaled_and_lies_plane_by_plane),
 		cmocka_unit_test(headers_other_than_90_90_180_are_refused_with_what_was_found),
+		cmocka_unit_test(numbers_of_another_machine_or_of_half_the_size_are_told),
 		cmocka_unit_test(truncation_at_any_byte_is_told_with_expected_and_found),
 		cmocka_unit_test(trailing_bytes_are_refused),
 		cmocka_unit_test(a_table_without_a_valid_cell_is_refused),

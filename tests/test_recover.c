@@ -27,8 +27,7 @@ static size_t random_below(size_t n)
 
 static void count_loss(void *user, const char *material, const bp_error *why)
 {
-	assert_non_null(material);
-	assert_true(why->status == BP_ERROR_CORRUPT);
+	assert_true(why->status == (material ? BP_ERROR_CORRUPT : BP_ERROR_NOT_FOUND));
 	++*(unsigned *)user;
 }
 
@@ -95,7 +94,7 @@ static void holes_cost_only_the_materials_they_hit(void **state)
 		assert_int_equal(status, BP_OK);
 		assert_int_equal(recovery.saved, COUNT - lost);
 		assert_true(recovery.lost <= lost);
-		assert_int_equal(recovery.lost, lost_told);
+		assert_true(recovery.lost >= lost_told);
 		assert_saved(fixture_path("saved.bpk"), damaged);
 	}
 }
@@ -117,6 +116,29 @@ static void a_lost_header_and_index_do_not_matter(void **state)
 	assert_int_equal(recovery.saved, COUNT);
 	assert_int_equal(recovery.lost, 0);
 	assert_saved(fixture_path("saved.bpk"), damaged);
+}
+
+static void what_a_cut_took_with_its_name_is_counted_by_the_header(void **state)
+{
+	unsigned told = 0;
+	struct recovery recovery;
+	size_t bytes, record_bytes;
+	uint8_t *file;
+	(void)state;
+	archive_make(fixture_path("whole.bpk"));
+	free(fixture_record(names[0], 2, SECTION_BYTES, &record_bytes));
+	file = fixture_file_read(fixture_path("whole.bpk"), &bytes);
+	fixture_file_write(fixture_path("cut.bpk"), file, ARCHIVE_HEADER_BYTES + 3 * record_bytes - 1);
+	assert_int_equal(archive_recover(fixture_path("cut.bpk"), fixture_path("saved.bpk"), count_loss, &told, &recovery, NULL),
+	                 BP_OK);
+	assert_int_equal(recovery.saved, 2);
+	assert_int_equal(recovery.lost, COUNT - 2);
+	assert_int_equal(told, 2);        /* the third by its name, all others at once */
+	file[ARCHIVE_AT_FILE_BYTES] ^= 1; /* a header that is damaged tells nothing */
+	fixture_file_write(fixture_path("cut.bpk"), file, ARCHIVE_HEADER_BYTES + 3 * record_bytes - 1);
+	assert_int_equal(archive_recover(fixture_path("cut.bpk"), fixture_path("saved.bpk"), NULL, NULL, &recovery, NULL), BP_OK);
+	assert_int_equal(recovery.lost, 1);
+	free(file);
 }
 
 static void of_two_archives_in_one_file_each_material_is_saved_once(void **state)
@@ -169,6 +191,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(holes_cost_only_the_materials_they_hit),
 		cmocka_unit_test(a_lost_header_and_index_do_not_matter),
+		cmocka_unit_test(what_a_cut_took_with_its_name_is_counted_by_the_header),
 		cmocka_unit_test(of_two_archives_in_one_file_each_material_is_saved_once),
 		cmocka_unit_test(what_holds_no_record_is_refused_and_the_damaged_one_may_be_replaced),
 	};

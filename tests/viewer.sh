@@ -17,6 +17,8 @@ shots=$(cd "$shots" && pwd)
 tool=$build/brdfpack
 names="gold-spray-paint silvered-mirror wine-velvet"
 
+grep -q '<h1>.*no archive yet' "$build/viewer/index.html" # what stands in the empty page's place of a name
+
 size=$(gzip -9 -c "$build/viewer/viewer.wasm" | wc -c)
 echo "viewer.wasm: $size bytes compressed"
 [ "$size" -le 200000 ] || { echo "viewer.sh: more than 200 KB"; exit 1; }

@@ -48,7 +48,8 @@ int main(int argc, char **argv)
 		return fprintf(stderr, "sphere: %s\n", out ? error.message : "usage: sphere ARCHIVE NAME OUT.ppm"), 1;
 	fprintf(out, "P6 %d %d 255\n", SIZE, SIZE);
 	for (int p = 0; p < SIZE * SIZE; p++) {
-		float x = (p % SIZE + 0.5f) / SIZE * 2 - 1, y = 1 - (p / SIZE + 0.5f) / SIZE * 2, rgb[3] = {0}, rest = 1 - x * x - y * y;
+		const float column = (float)(p % SIZE) + 0.5f, row = (float)(p / SIZE) + 0.5f;
+		float x = column / SIZE * 2 - 1, y = 1 - row / SIZE * 2, rgb[3] = {0}, rest = 1 - x * x - y * y;
 		if (rest > 0)
 			shade(material, (const float[]){x, y, sqrtf(rest)}, rgb);
 		for (int c = 0; c < 3; c++)

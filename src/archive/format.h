@@ -24,6 +24,7 @@ enum {
 	ARCHIVE_MAJOR = 1,
 	ARCHIVE_MINOR = 0,
 	ARCHIVE_HEADER_BYTES = 64,
+	ARCHIVE_AT_FILE_BYTES = 16,      /* where the header tells the file's size */
 	ARCHIVE_REQUIRED_FLAGS = 0xFFFF, /* bits that a reader must know; the upper half may be ignored */
 	PAGE_BYTES = 4096,
 	PAGE_HEAD_BYTES = 16,

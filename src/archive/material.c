@@ -125,7 +125,7 @@ static bp_status need_check(const struct record_head *head, size_t most, bp_erro
 	if (need <= limit)
 		return BP_OK;
 	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-	                 "%s: a table of %u x %u x %u cells may need %.0f MB, the limit is %.0f; max_memory_bytes sets it",
+	                 "%s: a table of %u x %u x %u cells may need %.0f MB, the limit is %.3g MB; max_memory_bytes sets it",
 	                 head->name, head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, need / 1e6, limit / 1e6);
 }
 
@@ -218,7 +218,8 @@ void bp_material_nearest(const bp_material *material, const float wi[3], const f
 void bp_material_evaluate_batch(const bp_material *material, size_t count, const float *const wi[3], const float *const wo[3],
                                 float *const rgb[3])
 {
-	table_evaluate_batch(material->table, count, wi, wo, rgb);
+	if (count > 0)
+		table_evaluate_batch(material->table, count, wi, wo, rgb);
 }
 
 float bp_material_sample(const bp_material *material, const float wo[3], const float u[3], float wi[3])

@@ -224,6 +224,31 @@ static bp_status records_save(struct scan *scan, struct archive_writer *writer, 
 	return BP_OK;
 }
 
+/* How many materials the archive's header tells of; 0 where there is none that can be believed. Cut files have one. */
+static uint64_t header_count(const struct scan *scan)
+{
+	uint8_t bytes[ARCHIVE_HEADER_BYTES] = {0};
+	struct archive_header header = {0};
+	if (scan_read(scan, 0, bytes, sizeof bytes) == sizeof bytes)
+		archive_header_read(bytes, sizeof bytes, load_u64(bytes + ARCHIVE_AT_FILE_BYTES), &header, NULL);
+	return header.count;
+}
+
+/* Where neither a record nor the index is left, the header still tells how many there were. */
+static void nameless_tell(const struct scan *scan, struct recovery *out)
+{
+	const uint64_t count = header_count(scan), named = out->saved + out->lost;
+	bp_error why;
+	if (count <= named)
+		return;
+	error_set(&why, BP_ERROR_NOT_FOUND, BP_NO_OFFSET,
+	          "%llu more of %llu materials lost: nothing is left of them, not even a name", (unsigned long long)(count - named),
+	          (unsigned long long)count);
+	if (scan->report)
+		scan->report(scan->user, NULL, &why);
+	out->lost += count - named;
+}
+
 static bp_status scan_open(struct scan *scan, const char *damaged, bp_error *error)
 {
 	struct stat found;
@@ -232,7 +257,7 @@ static bp_status scan_open(struct scan *scan, const char *damaged, bp_error *err
 	if (scan->fd < 0 || fstat(scan->fd, &found) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot open: %s", damaged, strerror(errno));
 	if (!S_ISREG(found.st_mode))
-		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "%s: not a regular file, so not a brdfpack archive", damaged);
+		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "%s: not an archive: not a regular file", damaged);
 	scan->file_bytes = (uint64_t)found.st_size;
 	return BP_OK;
 }
@@ -265,6 +290,7 @@ bp_status archive_recover(const char *damaged, const char *path, recover_report_
 	if (!status)
 		status = records_save(scan, writer, &recovery, error);
 	if (!status) {
+		nameless_tell(scan, &recovery);
 		status = archive_writer_commit(writer, error);
 		writer = NULL;
 	}

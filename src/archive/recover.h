@@ -11,10 +11,13 @@
 
 struct recovery {
 	uint64_t saved; /* records, each once */
-	uint64_t lost;  /* materials that are known to have been there, by a record's head or by the index */
+	uint64_t lost;  /* materials that are known to have been there, by a record's head, the index, or the header's count */
 };
 
-/* Is told of each material that is lost (with the offset of the damage where known) and of each second copy that is not saved. */
+/*
+ * Is told of each material that is lost (with the offset of the damage where known) and of each second copy that is not saved; once,
+ * without a name, of those that the header alone tells of.
+ */
 typedef void recover_report_fn(void *user, const char *material, const bp_error *why);
 
 /*

@@ -37,5 +37,7 @@ bp_status input_end(struct input *in, bp_error *error)
 
 bp_status input_truncated(uint64_t expected, uint64_t found, bp_error *error)
 {
-	return error_set(error, BP_ERROR_BAD_INPUT, found, "truncated: expected %" PRIu64 " bytes, found %" PRIu64, expected, found);
+	const bool floats = 2 * found == expected + 12; /* all there, behind a table's header, but as 4 bytes each */
+	return error_set(error, BP_ERROR_BAD_INPUT, found, "truncated: expected %" PRIu64 " bytes, found %" PRIu64 "%s", expected,
+	                 found, floats ? ", as many as values of 4 bytes take: a MERL file has values of 8 (float64)" : "");
 }

@@ -36,6 +36,9 @@ static bp_status no_merl_file(struct input *in, const uint8_t head[HEADER_BYTES]
 	const char *kind = status ? NULL : foreign_kind(more, HEADER_BYTES + got);
 	if (status)
 		return status;
+	if (extent[0] == extent[1] && extent[0] == (int32_t)__builtin_bswap32(90) && extent[2] == (int32_t)__builtin_bswap32(180))
+		return error_set(error, BP_ERROR_BAD_INPUT, 0,
+		                 "the bytes of its numbers are the other way round (big-endian): a MERL file is little-endian");
 	if (kind)
 		return error_set(error, BP_ERROR_BAD_INPUT, 0, "neither a MERL file nor one of the RGL database: %s", kind);
 	return error_set(error, BP_ERROR_BAD_INPUT, 0,

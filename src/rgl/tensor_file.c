@@ -72,8 +72,9 @@ static bp_status extent_check(struct tensor_field *field, uint64_t at, uint64_t 
 	}
 	if (field->offset > file_bytes || field->count * size > file_bytes - field->offset)
 		return error_set(error, BP_ERROR_BAD_INPUT, field->offset,
-		                 "field %s: %" PRIu64 " bytes at offset %" PRIu64 " go beyond the file's end at %" PRIu64, field->name,
-		                 field->count * size, field->offset, file_bytes);
+		                 "field %s: %" PRIu64 " bytes at offset %" PRIu64 " go beyond the file's end at %" PRIu64
+		                 ": it was cut, or is damaged",
+		                 field->name, field->count * size, field->offset, file_bytes);
 	return BP_OK;
 }
 

@@ -91,7 +91,7 @@ static int run(int argc, char **argv)
 		return EXIT_OK;
 	}
 	bool wants_help = !strcmp(name, "--help") || !strcmp(name, "-h") || !strcmp(name, "help");
-	if (wants_help && argc < 3) {
+	if (wants_help && (argc < 3 || !strcmp(argv[2], "help") || !strcmp(argv[2], "--help") || !strcmp(argv[2], "-h"))) {
 		help_print(stdout);
 		return EXIT_OK;
 	}

@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include "facts.h"
+#include "merl/spelling.h"
 #include "report.h"
 #include "usage.h"
 #include "workers.h"
@@ -28,6 +29,19 @@ static bool operands_check(const struct command *command, int argc, char **argv)
 			return false;
 		}
 	return true;
+}
+
+static void option_unknown(const struct command *command, const char *word, const struct option *names)
+{
+	char written[SPELLING_BYTES_MAX + 1];
+	struct name_guess guess;
+	snprintf(written, sizeof written, "%.*s", (int)strcspn(word, "="), word);
+	name_guess_start(&guess, written + strspn(written, "-"));
+	for (; names->name; names++)
+		name_guess_offer(&guess, names->name);
+	const char *best = name_guess_best(&guess);
+	report_usage(command, "unknown option '%s'%s%s%s", written, best ? " (did you mean '--" : "", best ? best : "",
+	             best ? "'?)" : "");
 }
 
 /* The next option's letter or number; ENDED, HELPED after the help, WRONG after a message. */
@@ -63,7 +77,7 @@ static int option_next(const struct command *command, int argc, char **argv, con
 		else if (optopt && optopt < 128 && isprint(optopt) && strncmp(word, "--", 2) != 0)
 			report_usage(command, "unknown option '-%c'", optopt);
 		else
-			report_usage(command, "unknown option '%s'", word);
+			option_unknown(command, word, names);
 		return WRONG;
 	default: return option;
 	}

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "not_archive.h"
 #include "shown.h"
 
 void (*report_before)(void);
@@ -78,7 +79,7 @@ void error_describe(const bp_error *error, char *text, size_t bytes)
 	else if (error->status == BP_ERROR_CORRUPT || error->status == BP_ERROR_CHECKSUM || error->status == BP_ERROR_NOT_OURS ||
 	         error->status == BP_ERROR_UNSUPPORTED)
 		snprintf(kind, sizeof kind, "%s", bp_status_text(error->status));
-	if (strncmp(error->message, kind, strlen(kind)) == 0)
+	if (strstr(error->message, kind))
 		kind[0] = '\0'; /* the message says so itself */
 	const char *message = error->message[0] ? error->message : kind[0] ? "" : bp_status_text(error->status);
 	const char *remedy = status_remedy(error);
@@ -90,6 +91,7 @@ void report_error(const char *file, const char *material, const bp_error *error)
 {
 	struct line line = {.used = 0};
 	char text[1024];
+	const char *named = file;
 	error_describe(error, text, sizeof text);
 	if (file && !material && !strncmp(text, file, strlen(file)) && text[strlen(file)] == ':')
 		file = NULL; /* what writes files names them itself */
@@ -98,6 +100,10 @@ void report_error(const char *file, const char *material, const bp_error *error)
 	if (file && !material &&
 	    (error->status == BP_ERROR_CORRUPT || error->status == BP_ERROR_CHECKSUM)) /* an archive as a whole */
 		line_add(&line, "; `brdfpack recover` saves what is intact");
+	if (named && !material && error->status == BP_ERROR_NOT_OURS) {
+		not_archive_tell(named, text, sizeof text);
+		line_add(&line, text);
+	}
 	line_print(&line);
 }
 

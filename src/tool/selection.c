@@ -38,6 +38,15 @@ void selection_missing_report(const struct selection *selection, const char *wri
 	report_error(selection->path, written, &error);
 }
 
+/* A name that is written twice means its material once. */
+static bool is_selected(const struct selection *selection, uint64_t index)
+{
+	for (uint64_t n = 0; n < selection->count; n++)
+		if (selection->index[n] == index)
+			return true;
+	return false;
+}
+
 bool selection_open(struct selection *selection, const char *path, char **names, int name_count)
 {
 	bp_error error;
@@ -61,7 +70,7 @@ bool selection_open(struct selection *selection, const char *path, char **names,
 	for (int i = 0; i < name_count; i++) {
 		bp_status status = material_name_find(selection->archive, names[i], &selection->index[selection->count], &error);
 		if (!status) {
-			selection->count++;
+			selection->count += !is_selected(selection, selection->index[selection->count]);
 			continue;
 		}
 		selection->incomplete = true;

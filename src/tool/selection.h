@@ -16,7 +16,7 @@ struct selection {
 	const char *path;
 	bp_archive *archive;
 	bool all;        /* every material, in name order */
-	uint64_t *index; /* otherwise these, in the order they were named */
+	uint64_t *index; /* otherwise these, each once, in the order they were named */
 	uint64_t count;
 	bool incomplete;        /* some name was not there; that has been reported */
 	struct index_page leaf; /* of the walk over all */

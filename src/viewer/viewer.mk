@@ -24,10 +24,12 @@ $(VIEWER_BUILD)/viewer.html: $(VIEWER_BUILD)/viewer.wasm $(addprefix src/viewer/
 	$(call SAY,PAGE  $@)
 	$(Q)src/viewer/bundle.sh $< > $@.part && mv $@.part $@
 
-# The page alone, for archives that are dropped onto it.
+# The page alone, for archives that are dropped onto it. An archive's page has its name: this one's says that there is none.
 $(VIEWER_BUILD)/index.html: $(VIEWER_BUILD)/viewer.html $(BUILD)/brdfpack format-spec/vectors/good-empty.bpk
 	$(call SAY,PAGE  $@)
-	$(Q)$(BUILD)/brdfpack report -q --force -o $@ format-spec/vectors/good-empty.bpk
+	$(Q)cp format-spec/vectors/good-empty.bpk "$(VIEWER_BUILD)/no archive yet"
+	$(Q)$(BUILD)/brdfpack report -q --force -o $@ "$(VIEWER_BUILD)/no archive yet"
+	$(Q)rm "$(VIEWER_BUILD)/no archive yet"
 
 viewer:
 	@command -v $(EMCC) >/dev/null || { echo "the viewer needs emcc: apt-get install emscripten"; exit 1; }

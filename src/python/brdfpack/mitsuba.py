@@ -14,8 +14,11 @@ the table's mean over theta_d and phi_d, with a share of the cosine's density.
 """
 from __future__ import annotations
 
-import drjit as dr
-import mitsuba as mi
+try:
+    import drjit as dr
+    import mitsuba as mi
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError("brdfpack.mitsuba needs Mitsuba 3: pip install mitsuba", name=missing.name) from missing
 import numpy as np
 
 import brdfpack

@@ -131,7 +131,11 @@ static bp_status previous_open(struct build *build, bp_error *error)
 	struct stat facts;
 	if (!build->options->update || (stat(build->options->output, &facts) != 0 && errno == ENOENT))
 		return BP_OK;
-	return bp_archive_open(build->options->output, &build->previous, error);
+	const bp_status status = bp_archive_open(build->options->output, &build->previous, error);
+	const size_t used = status ? strlen(error->message) : 0;
+	if (status == BP_ERROR_CORRUPT || status == BP_ERROR_CHECKSUM)
+		snprintf(error->message + used, sizeof error->message - used, "; without --update everything is packed anew");
+	return status;
 }
 
 /* There are materials, but none falls to this shard: its archive has none, and is as good as any for the merge. */

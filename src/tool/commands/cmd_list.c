@@ -161,10 +161,11 @@ static void totals_json(const struct selection *selection, const struct totals *
 
 static void totals_print(const struct totals *totals)
 {
-	printf("%" PRIu64 " material%s, %" PRIu64 " bytes, made from %" PRIu64 " bytes", totals->materials,
-	       totals->materials == 1 ? "" : "s", totals->record_bytes, totals->source_bytes);
-	if (totals->record_bytes > 0)
-		printf(" (1/%.0f)", (double)totals->source_bytes / (double)totals->record_bytes);
+	printf("%" PRIu64 " material%s, %" PRIu64 " bytes of records", totals->materials, totals->materials == 1 ? "" : "s",
+	       totals->record_bytes);
+	if (totals->source_bytes > 0) /* what a program packed from memory has no file behind it */
+		printf(", made from %" PRIu64 " bytes (1/%.0f)", totals->source_bytes,
+		       (double)totals->source_bytes / (double)totals->record_bytes);
 	putchar('\n');
 }
 

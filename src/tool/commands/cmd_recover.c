@@ -29,7 +29,8 @@ static int recover_main(const struct command *self, int argc, char **argv)
 	if (!output_check(output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, 1))
 		return EXIT_FAILED;
 	if (archive_recover(argv[optind], output, loss_report, argv[optind], &recovery, &error) != BP_OK) {
-		report_error(NULL, NULL, &error);
+		/* what cannot be read or written names itself; what is no archive, here */
+		report_error(error.status == BP_ERROR_NOT_OURS ? argv[optind] : NULL, NULL, &error);
 		return EXIT_FAILED;
 	}
 	report_remark(output, &error);
@@ -45,7 +46,7 @@ const struct command command_recover = {
 	.usage = "Usage: brdfpack recover -o OUT.bpk DAMAGED.bpk\n"
 			 "Scans the damaged archive for records, with or without its index, and writes every record whose\n"
 			 "checksums hold into a new archive, unchanged. Says what was lost, as far as a record's head or the\n"
-			 "index tells; exit code 1 when anything was.\n"
+			 "index tells, and how many more the header counts; exit code 1 when anything was.\n"
 			 "\n"
 			 "  -o, --output FILE  the new archive; replaces an older one, but not the damaged one\n"
 			 "      --force        also the damaged one, or a file that is no archive\n"

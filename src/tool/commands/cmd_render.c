@@ -81,7 +81,10 @@ static int render_main(const struct command *self, int argc, char **argv)
 	code = material_load(self, argv + optind, argc - optind, &material);
 	if (code != EXIT_OK)
 		return code;
-	code = material_render(&options, &material);
+	if (material.measured && argc - optind > 1)
+		code = report_usage(self, "'%s' is a measured file, of one material: '%s' is too much", material.path, argv[optind + 1]);
+	else
+		code = material_render(&options, &material);
 	material_free(&material);
 	return code;
 }

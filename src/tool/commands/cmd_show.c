@@ -19,6 +19,7 @@
 struct show_options {
 	const char *output, *reference;
 	bool svg, force;
+	enum profile packing; /* 0: not asked for */
 	struct fit_options fit;
 	int slice_count;
 	double theta_h[FIGURE_SLICES_MAX];
@@ -194,20 +195,30 @@ static int show_draw(struct show *show, const struct show_options *options)
 	return EXIT_OK;
 }
 
+/* Options that the material cannot mean. */
+static int options_fit(const struct command *self, const struct show_options *options, const struct material *material)
+{
+	if (material->measured && options->reference)
+		return report_usage(self, "--measured is about a material of an archive, '%s' is a measured file", material->path);
+	if (!material->measured && options->packing)
+		return report_usage(self, "--profile is about a measured file, which is packed; '%s' is an archive", material->path);
+	return EXIT_OK;
+}
+
 static int show_main(const struct command *self, int argc, char **argv)
 {
-	struct show_options options = {.slice_count = 5,
-	                               .theta_h = {5, 20, 40, 60, 80},
-	                               .fit = {.profile = PROFILE_PAPER, .budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL}};
+	struct show_options options = {
+		.slice_count = 5, .theta_h = {5, 20, 40, 60, 80}, .fit = {.budget_bytes = BUDGET_USUAL, .effort = EFFORT_USUAL}};
 	const struct option_rule rules[] = {
 		{"output", 'o', option_text, .to = &options.output},    {"theta-h", 0, angles_take, .to = &options},
-		{"measured", 0, option_text, .to = &options.reference}, {"profile", 0, option_profile, .to = &options.fit.profile},
+		{"measured", 0, option_text, .to = &options.reference}, {"profile", 0, option_profile, .to = &options.packing},
 		{"force", 0, option_flag, .to = &options.force},        {0}};
 	int code = options_read(self, argc, argv, rules);
 	if (code != OPTIONS_END)
 		return code;
 	if (!option_picture(self, options.output, ".svg", &options.svg))
 		return EXIT_USAGE;
+	options.fit.profile = options.packing ? options.packing : PROFILE_PAPER;
 	const char *const inputs[2] = {optind < argc ? argv[optind] : NULL, options.reference};
 	if (inputs[0] && !output_check(options.output, OUTPUT_KIND_PICTURE, options.force, inputs, 2))
 		return EXIT_FAILED;
@@ -217,6 +228,8 @@ static int show_main(const struct command *self, int argc, char **argv)
 		return EXIT_FAILED;
 	}
 	code = material_load(self, argv + optind, argc - optind, &show->material);
+	if (code == EXIT_OK)
+		code = options_fit(self, &options, &show->material);
 	if (code == EXIT_OK)
 		code = show_draw(show, &options);
 	density_source_free(&show->measured);

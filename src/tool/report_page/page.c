@@ -202,6 +202,22 @@ static void making_free(struct making *making)
 	comparison_plans_free(&making->job.plans);
 }
 
+/* Finds the measured files, and says where some are not there: the folder may be another one than was meant. */
+static bp_status measured_find(struct page *page, const char *folder, bp_error *error)
+{
+	const struct measured_set *set = &page->measured;
+	const char *first = NULL;
+	size_t missing = 0;
+	const bp_status status = measured_set_find(&page->measured, folder, error);
+	for (size_t n = 0; status == BP_OK && n < set->count; n++)
+		if (!set->item[n].source)
+			first = missing++ ? first : set->name[n];
+	if (missing > 0)
+		report_warning(folder, NULL, "no measured file of %zu of %zu materials, '%s' the first of them; these are shown alone",
+		               missing, set->count, first);
+	return status;
+}
+
 int page_run(const struct page_options *options, struct selection *selection)
 {
 	struct making making = {.page = {.options = options, .selection = selection}};
@@ -218,7 +234,7 @@ int page_run(const struct page_options *options, struct selection *selection)
 		                   "--embed: the viewer is not there, so nothing could read the archive; "
 		                   "`make viewer` builds it (Debian package emscripten)");
 	if (status == BP_OK && options->measured)
-		status = measured_set_find(&page->measured, options->measured, &error);
+		status = measured_find(page, options->measured, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */
 		status = output_file_open(options->output, OUTPUT_REPLACE, &output.file, &error);
 	if (status == BP_OK) {

@@ -221,7 +221,7 @@ static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t 
 static void layers_write(FILE *out, const struct subject *subject)
 {
 	const struct record_head *head = &subject->head;
-	html_table(out, "Layers: what loading up to each costs, and the error that is left", "layer", "bytes", "log RMSE",
+	html_table(out, "Layers: what loading up to each costs, and the error that is left", "layers", "bytes", "log RMSE",
 	           "below the horizon too", "cube-root RMSE", "largest relative error", NULL);
 	fputs("</tr></thead><tbody>", out);
 	for (uint32_t l = 0; l < head->layer_count; l++)

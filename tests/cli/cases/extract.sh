@@ -4,6 +4,8 @@ build -o out.bpk .
 code brdfpack extract -C new/folder out.bpk
 code brdfpack extract -C one out.bpk beta
 cmp one/beta.binary new/folder/beta.binary && echo same
+code brdfpack extract -C twice out.bpk beta beta.binary
+brdfpack list --json out.bpk beta beta | wc -l
 stat -c '%s %n' new/folder/* one/*
 python3 - <<'END'
 import struct

@@ -4,3 +4,4 @@ code brdfpack
 code brdfpack --help | tail -n 1
 code brdfpack nonsense
 code brdfpack help nonsense
+code brdfpack help --help | tail -n 1

@@ -3,7 +3,9 @@ fixture alpha beta
 cp alpha.binary 'grün.binary' && cp alpha.binary 'ガ.binary'
 build -q -o m.bpk .
 names() { brdfpack list --json "$1" | sed -n 's/.*"name": *"\([^"]*\)".*/\1/p' | tr '\n' ' '; echo; }
-brdfpack list --json m.bpk alpha.binary ./beta.binary /data/merl/grün.BINARY alpha.binary.gz merl/beta | sed -n 's/.*"name": *"\([^"]*\)".*/\1/p'
+for written in alpha.binary ./beta.binary /data/merl/grün.BINARY alpha.binary.gz merl/beta; do
+	brdfpack list --json m.bpk "$written" | sed -n 's/.*"name": *"\([^"]*\)".*/\1/p'
+done
 code brdfpack extract -C x m.bpk beta.binary && ls x
 code brdfpack extract -C x m.bpk bteta.binary
 code brdfpack list m.bpk $'gru\xcc\x88n'

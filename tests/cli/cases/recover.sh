@@ -17,6 +17,10 @@ for name in alpha gamma; do cmp "whole/$name.binary" "saved/$name.binary"; done
 code brdfpack recover -o hole.bpk hole.bpk
 code brdfpack recover --force -o hole.bpk hole.bpk >/dev/null 2>&1
 brdfpack verify hole.bpk
+head -c 3000 out.bpk >cut.bpk
+code brdfpack recover -o none.bpk cut.bpk 2>&1 | sed 's/offset [0-9]*/offset N/'
+rm none.bpk
+code brdfpack recover -o none.bpk whole
 code brdfpack recover -o none.bpk whole/alpha.binary
 code brdfpack recover hole.bpk
 ls

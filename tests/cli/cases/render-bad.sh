@@ -13,4 +13,5 @@ code brdfpack render -o a.png out.bpk alpha beta
 code brdfpack render -o missing/a.png out.bpk alpha
 code brdfpack render -o a.png "$FIXTURES/unmeasured.binary"
 code brdfpack render -o a.png nowhere.binary
+code brdfpack render -o a.png alpha.binary beta
 ls

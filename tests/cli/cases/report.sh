@@ -18,6 +18,8 @@ grep -o 'measured, decoded, difference ×10; [0-9]' one.html
 mkdir nothing
 brdfpack report -q --measured nothing -o alone.html out.bpk beta
 grep -o 'not compared: there is no measured file of that name' alone.html
+mkdir some && cp beta.binary some
+code brdfpack report -q --measured some -o some.html out.bpk
 # a damaged record: the second of three
 damage out.bpk damaged.bpk alpha
 code brdfpack report -q -o damaged.html damaged.bpk

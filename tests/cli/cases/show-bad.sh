@@ -11,6 +11,8 @@ code brdfpack show --measured nowhere -o a.svg out.bpk alpha
 code brdfpack show -o missing/a.svg out.bpk alpha
 code brdfpack show -o a.svg out.bpk gamma
 code brdfpack show -o a.svg "$FIXTURES/unmeasured.binary"
+code brdfpack show --profile spectral -o a.svg out.bpk alpha
+code brdfpack show --measured alpha.binary -o a.svg alpha.binary
 ls
 # a folder with no file of that name: both names that were looked for
 mkdir empty

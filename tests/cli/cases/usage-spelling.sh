@@ -8,3 +8,6 @@ code brdfpack build --out x.bpk y
 code brdfpack build --out=x.bpk y
 code brdfpack build --budg 5000 -o x.bpk y
 code brdfpack build --no -o x.bpk y
+code brdfpack build --jbos 2 y
+code brdfpack extract --fromat=bsdf x.bpk
+code brdfpack list --zzz x.bpk
