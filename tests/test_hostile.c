@@ -205,6 +205,16 @@ static void an_index_that_contradicts_itself_is_refused(void **state)
 	fixture_file_write(fixture_path("p.bpk"), file, bytes);
 	assert_int_equal(read_all(fixture_path("p.bpk"), NULL), BP_ERROR_CORRUPT);
 	key[254]++;
+
+	/* the root is its own child: told for what it is, before it is read again */
+	const uint32_t first = load_u32(root + PAGE_HEAD_BYTES);
+	bp_error error;
+	store_u32(root + PAGE_HEAD_BYTES, first + 2);
+	page_seal(root);
+	fixture_file_write(fixture_path("p.bpk"), file, bytes);
+	assert_int_equal(read_all(fixture_path("p.bpk"), &error), BP_ERROR_CORRUPT);
+	assert_non_null(strstr(error.message, "a child page follows its parent"));
+	store_u32(root + PAGE_HEAD_BYTES, first);
 	page_seal(root);
 
 	/* the second leaf ends before the last material */
