@@ -15,6 +15,8 @@ enum source_kind {
 };
 enum { SOURCE_STEM_BYTES = 512 };
 
+extern const char *const SOURCE_SUFFIXES[]; /* of measured files, as they are written; NULL ends them */
+
 /* By the path's last part alone (for files found in folders); hidden files are SOURCE_KIND_OTHER. */
 enum source_kind source_kind_by_name(const char *path);
 

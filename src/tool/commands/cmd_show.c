@@ -8,6 +8,7 @@
 #include "error.h"
 #include "merl/merl_file.h"
 #include "merl/sha256.h"
+#include "merl/source_kind.h"
 #include "render/figure.h"
 
 #include <math.h>
@@ -57,9 +58,8 @@ static bool angles_take(const struct command *command, const struct option_rule 
 /* The measured file of a material in a folder: NAME.binary, or NAME.bsdf where that is what there is. malloc'ed. */
 static bp_status measured_path(const char *folder, const char *name, char **out, bp_error *error)
 {
-	static const char *const SUFFIXES[] = {"binary", "bsdf"};
-	for (size_t n = 0; n < sizeof SUFFIXES / sizeof *SUFFIXES; n++) {
-		if (asprintf(out, "%s/%s.%s", folder, name, SUFFIXES[n]) < 0)
+	for (size_t n = 0; SOURCE_SUFFIXES[n]; n++) {
+		if (asprintf(out, "%s/%s%s", folder, name, SOURCE_SUFFIXES[n]) < 0)
 			return error_memory(error, strlen(folder) + strlen(name));
 		if (access(*out, F_OK) == 0)
 			return BP_OK;
