@@ -98,7 +98,7 @@ static const char *seen_name(const struct scan *scan, const struct seen *seen)
 	return (const char *)scan->names.bytes + seen->name;
 }
 
-/* Is the record that the index has at `offset` one that was found, intact and of that name? Records are found in the order of the file. */
+/* Is the record that the index has at `offset` one that was found, intact, of that name? Those found are in the file's order. */
 static bool record_found(const struct scan *scan, const struct index_entry *entry)
 {
 	size_t low = 0, high = scan->record_count;

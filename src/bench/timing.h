@@ -40,7 +40,7 @@ bp_status time_table(const struct expansion *table, const struct pairs *pairs, i
 /* ... and in the raw table of double: the yardstick of a renderer that reads the measured file. */
 bp_status time_raw_table(const struct lattice *lattice, const struct pairs *pairs, int repeats, double *ns, bp_error *error);
 
-/* Reads a whole file as cat does, 128 KiB at a time; wall-clock seconds. Its bytes go to *bytes (malloc'ed) when that is not NULL. */
+/* Reads a whole file as cat does, 128 KiB at a time; wall-clock seconds. *bytes, unless NULL, gets its bytes (malloc'ed). */
 bp_status time_read(const char *path, double *seconds, uint8_t **bytes, size_t *count, bp_error *error);
 
 #endif

@@ -92,8 +92,8 @@ struct bracket {
 };
 
 /*
- * Where to try next: errors fall about as bytes^-k, with k from the last two sizes, 0.85 before. A little more is asked than needed.
- * Where that would not shrink the bracket, its middle.
+ * Where to try next: errors fall about as bytes^-k, with k from the last two sizes, 0.85 before. A little more is asked than
+ * needed. Where that would not shrink the bracket, its middle.
  */
 static uint32_t bracket_next(const struct bracket *b, double max_error)
 {

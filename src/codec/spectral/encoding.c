@@ -57,7 +57,7 @@ static bool worth_going_on(const struct encoding *e, struct attempt *a)
 	return a->wanted >= a->search->low * a->room && a->wanted <= a->search->high * a->room;
 }
 
-/* Units from *unit on until layer l is full; `bytes` of the record come before it. False: the attempt was given up, or the watch ended it. */
+/* Units from *unit on until layer l is full; `bytes` of the record come before it. False: given up, or ended by the watch. */
 static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, struct mixed_coder *coder, uint64_t bytes,
                          uint32_t *unit, uint64_t *largest_unit, bp_error *error)
 {

@@ -32,8 +32,8 @@ static const uint32_t PREVIEWS[] = {4096, 16384, 65536, 262144, 1048576};
 enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
 /*
- * What the model is says how its fields are written. All three are in use: rows are whole where an error was asked for or nothing can be
- * seen, cut at the horizon where a table is too small to be graded; all else is graded.
+ * What the model is says how its fields are written. All three are in use: rows are whole where an error was asked for or nothing
+ * can be seen, cut at the horizon where a table is too small to be graded; all else is graded.
  */
 static uint16_t fields_version(const struct spectral_model *model)
 {

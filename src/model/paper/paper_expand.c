@@ -20,7 +20,7 @@ struct slices {
 	float *column; /* f_phi c_hphi of the slice */
 };
 
-/* Values stay below this, in 1/sr, so that they are finite in a MERL file too, which multiplies by 1500. Only hostile records come near. */
+/* Values stay below this, in 1/sr: in a MERL file they are up to 1500 times as large. Only hostile records come near. */
 static const double VALUE_MAX = 1e304;
 
 /* Factors stay below this, so that no product of them leaves the range of float. */

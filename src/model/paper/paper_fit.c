@@ -128,8 +128,8 @@ static double line_error(const struct workshop *w, const struct lattice *lattice
 }
 
 /*
- * The regression follows the many: where more than half of a channel is as good as black, its line is 0, lobe and all. Where it loses
- * that much against the model as it is, the model stays as it is.
+ * The regression follows the many: where more than half of a channel is as good as black, its line is 0, lobe and all. Where it
+ * loses that much against the model as it is, the model stays as it is.
  */
 static void colour_settle(const struct workshop *w, const struct lattice *lattice, int c, const struct paper_channel *channel,
                           struct colour_fit *colour)

@@ -7,8 +7,9 @@
 #include "spectral.h"
 
 /*
- * Cells column..column + width - 1 of the rows row..row + rows - 1 of phi_d (theta_h * D + theta_d): three fields, rows `stride` apart.
- * May be read up to 15 cells past the last. `alone`: of one row; its other cells, on either side, have the value of the one beside them.
+ * Cells column..column + width - 1 of the rows row..row + rows - 1 of phi_d (theta_h * D + theta_d): three fields, rows `stride`
+ * apart. May be read up to 15 cells past the last. `alone`: of one row; its other cells, on either side, have the value of the
+ * one beside them.
  */
 struct spectral_block {
 	const float *field[3];

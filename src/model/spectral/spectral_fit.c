@@ -1,7 +1,8 @@
 /*
  * spectral_fit.c: a measured lattice becomes the spectra of three fields.
  *
- *     logarithms -> fill -> spectrum, rows cut at the horizon, per channel -> rotation to the channels' principal axes -> noise drawn towards 0 -> weights
+ *     logarithms -> fill -> spectrum, rows cut at the horizon, per channel -> rotation to the channels' principal axes -> noise
+ *     drawn towards 0 -> weights
  *
  * and, beside it, the paper's colour regression on the measured achromatic table.
  *
@@ -93,9 +94,9 @@ static void rotation_find(float *const channel[3], size_t rows, size_t lanes, fl
 }
 
 /*
- * The lattice, with only the cells that a picture can be made of as valid ones; *counted, which the caller frees, is their marks. What
- * lies wholly below the horizon is filled instead: it would cost as much as what is seen (VARIANTS.md), and interpolation takes
- * less than half of its value from it. Where nothing else is there, all valid cells stay.
+ * The lattice, with only the cells that a picture can be made of as valid ones; *counted, which the caller frees, is their marks.
+ * What lies wholly below the horizon is filled instead: it would cost as much as what is seen (VARIANTS.md), and interpolation
+ * takes less than half of its value from it. Where nothing else is there, all valid cells stay.
  */
 static bp_status seen_cells(const struct lattice *lattice, struct lattice *out, uint8_t **counted, bp_error *error)
 {
@@ -186,7 +187,7 @@ static bp_status fields_make(struct lattice_dims d, const uint16_t *span, const 
 	return status;
 }
 
-/* Steps of spectral_project by effort 0..9 (0: not told, as records may say): what the first saves, 3 % of a record, costs a sixth of a fit. */
+/* Steps of spectral_project by effort 0..9 (0: a record does not say): the first saves 3 % of a record, for a sixth of a fit. */
 static const int PROJECTIONS[10] = {0, 0, 0, 0, 0, 0, 1, 2, 4, 8};
 
 /* fields_make after better values have been found for the invalid cells; noise would only be carried on into them. */

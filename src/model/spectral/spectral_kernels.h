@@ -22,7 +22,7 @@ struct spectral_kernels {
 	void (*cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix, size_t columns,
 	                       float *out, size_t out_stride);
 
-	/* n values from sums x_k + x_{n-1-k} and differences, n/2 of them, where n is odd one more sum: the middle value. out is none of them. */
+	/* n values from n/2 sums x_k + x_{n-1-k} and differences, where n is odd one more sum: the middle value. out is neither. */
 	void (*span_unfold)(const float *sum, const float *difference, size_t n, float *out);
 
 	/* The steps of cosines.h; rows of 16 values. */
@@ -41,8 +41,8 @@ struct spectral_kernels {
 	void (*spectrum_spread)(const struct spectrum_term *terms, size_t count, const float *cosine, float *plane);
 
 	/*
-	 * The inverse wavelets of a plane [rows][columns][16], whose coefficients stand in their places. `half`: only cells of even row
-	 * and column come out, the others mean nothing.
+	 * The inverse wavelets of a plane [rows][columns][16], whose coefficients stand in their places. `half`: only cells of even
+	 * row and column come out, the others mean nothing.
 	 */
 	void (*cdf97_plane)(float *plane, size_t rows, size_t columns, unsigned levels, int half);
 
@@ -73,15 +73,15 @@ struct spectral_kernels {
 	void (*spectral_rotate)(float *const x[3], size_t n, const float rotation[3][3]);
 
 	/*
-	 * A piece of a row of the fill: where filled = 1, a cell becomes the weighted mean of its six neighbours (phi_d counts four times:
-	 * along it the field is smoothest, and its basis has the fewest coefficients); where it is 0, it stays. Along phi_d the
-	 * neighbours are the old values, with one before and one after the piece.
+	 * A piece of a row of the fill: where filled = 1, a cell becomes the weighted mean of its six neighbours (phi_d counts four
+	 * times: along it the field is smoothest, and its basis has the fewest coefficients); where it is 0, it stays. Along phi_d
+	 * the neighbours are the old values, with one before and one after the piece.
 	 */
 	void (*spectral_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before, float after);
 
 	/*
-	 * x_q times max(0, 1 - threshold factor_q / e_q), e being the sum of the squares of the 3 x 3 coefficients around and, half as much
-	 * each, of the lanes before and after. square[r] + q + s stride: those of row r - 1 and column s - 1.
+	 * x_q times max(0, 1 - threshold factor_q / e_q), e being the sum of the squares of the 3 x 3 coefficients around and, half
+	 * as much each, of the lanes before and after. square[r] + q + s stride: those of row r - 1 and column s - 1.
 	 */
 	void (*spectral_shrink)(float *x, const float *const square[3], size_t stride, const float *factor, float threshold,
 	                        size_t n);

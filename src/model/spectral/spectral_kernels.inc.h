@@ -1,4 +1,4 @@
-/* spectral_kernels.inc.h: all loops of spectral_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+/* spectral_kernels.inc.h: the loops of spectral_kernels.h, for the including file's target. KERNEL(name) must be defined. */
 #include "spectral_kernels.h"
 #include "model/math/vector.h"
 

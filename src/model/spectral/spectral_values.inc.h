@@ -81,7 +81,7 @@ static void KERNEL(spectral_moments)(const float *const x[3], size_t n, double s
 
 /*
  * n cells of one channel. The limits are those of the numbers as integers, which is the same for positive ones and takes half the
- * instructions; negative ones become 0. No field is NaN: coefficients are within 2^98, and the sums of them far within the range of float.
+ * instructions; negative ones become 0. No field is NaN: coefficients are within 2^98, their sums far within the range of float.
  */
 static inline
 	__attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
@@ -107,7 +107,7 @@ static void KERNEL(spectral_values)(const float *const field[3], size_t rows, si
 		for (int c = 0; c < 3; c++) {
 			const float weight[3] = {rotation[0][c], rotation[1][c], rotation[2][c]};
 			float *out = rgb[c] + i * rgb_stride;
-			/* Rows of a block lie apart, which no processor foresees: without this the stores take twice the time of all the rest. */
+			/* Rows of a block lie apart, which no processor foresees: else the stores take twice the time of all the rest. */
 			if (i + 16 < rows) {
 				__builtin_prefetch(out + 16 * rgb_stride, 1);
 				__builtin_prefetch(out + 16 * rgb_stride + BLOCK - 1, 1);

@@ -8,7 +8,7 @@
 #include "error.h"
 #include "spectral_kernels.h"
 
-/* One axis of `here` coefficients of one step, coarse ones first: where the i-th belongs among them, and its gain in that step. */
+/* One axis of `here` coefficients of one step, coarse ones first: the place of the i-th among them, and its gain in that step. */
 static uint32_t step_place(uint32_t i, uint32_t here, float *gain)
 {
 	const uint32_t low = (here + 1) / 2;
@@ -25,7 +25,7 @@ static void places_fill(struct spectrum_inverse *t)
 
 	for (uint32_t i = 0; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			/* The coarsest step whose coefficients reach so far has it among its own; the last one's low ones are of the coarsest band. */
+			/* The coarsest step whose coefficients reach so far has it; the last one's low ones are of the coarsest band. */
 			uint32_t l = 0;
 			while (l < t->levels && i < spectrum_extent(d.theta_h, l + 1) && j < spectrum_extent(d.theta_d, l + 1))
 				l++;

@@ -50,8 +50,8 @@ void spectrum_inverse_cosines(const struct spectrum_inverse *inverse, uint32_t h
                               uint32_t count, float *out);
 
 /*
- * The cells first..first + SPECTRUM_BLOCK - 1 of all rows of phi_d, from the terms start[m]..start[m + 1] - 1 of every harmonic m.
- * The plane is aligned to a vector of 32 bytes; what lies past the last cell means nothing.
+ * The cells first..first + SPECTRUM_BLOCK - 1 of all rows of phi_d, from the terms start[m]..start[m + 1] - 1 of every harmonic
+ * m. The plane is aligned to a vector of 32 bytes; what lies past the last cell means nothing.
  */
 void spectrum_inverse_block(const struct spectrum_inverse *inverse, const struct spectrum_term *terms, const uint32_t *start,
                             uint32_t first, float *plane);

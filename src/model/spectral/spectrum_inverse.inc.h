@@ -1,4 +1,4 @@
-/* spectrum_inverse.inc.h: planes of SPECTRUM_BLOCK = 16 values per row of phi_d. See spectral_kernels.h and spectrum_inverse.h. */
+/* spectrum_inverse.inc.h: planes of SPECTRUM_BLOCK = 16 values a row of phi_d. See spectral_kernels.h and spectrum_inverse.h. */
 #include "spectrum_inverse.h"
 
 static void KERNEL(spectrum_spread)(const struct spectrum_term *terms, size_t count, const float *cosine, float *plane)

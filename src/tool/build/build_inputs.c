@@ -54,7 +54,7 @@ static bool is_wanted(void *user, const char *name)
 	return (entry || build->manifest.count == 0) && build_shard_has(build->options, name);
 }
 
-/* Files by name; members of a container where it stands first, one after the other: whoever goes back in it reads it from the start. */
+/* Files by name; members of a container where it stands first, in their order: who goes back in it reads it from the start. */
 static int order_compare(const void *a, const void *b, void *user)
 {
 	const struct source_item *items = user, *x = &items[*(const size_t *)a], *y = &items[*(const size_t *)b];

@@ -45,8 +45,8 @@ bool build_goes_on(const struct build *build);
 void build_stop(struct build *build, const char *file, const char *material, const bp_error *error);
 
 /*
- * Whether a material of this name belongs to the shard: name_shard. Names alone decide, so the shards of any count are disjoint and
- * together all there is.
+ * Whether a material of this name belongs to the shard: name_shard. Names alone decide, so the shards of any count are disjoint
+ * and together all there is.
  */
 bool build_shard_has(const struct build_options *options, const char *name);
 

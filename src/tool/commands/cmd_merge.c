@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
-/* All inputs stay open: ask for as many files as that takes, where the usual limit (1,024) is lower. Opening tells where it is not allowed. */
+/* All inputs stay open: asks for so many files where the usual limit (1,024) is lower. Opening tells where it is not allowed. */
 static void files_allow(size_t count)
 {
 	struct rlimit limit;

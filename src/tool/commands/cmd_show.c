@@ -69,7 +69,7 @@ static bp_status measured_path(const char *folder, const char *name, char **out,
 	                 name);
 }
 
-/* The measured file that belongs to an archived material: the path itself, or that of its name in that folder. Another one than was packed is told. */
+/* The measured file of an archived material: the path, or that of its name in it. Another one than was packed is told. */
 static bp_status reference_read(const char *path, const struct record_head *head, struct lattice *out, bp_error *error)
 {
 	struct sha256 sha;

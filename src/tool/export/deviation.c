@@ -51,8 +51,8 @@ static double light_from(const struct light *light, const double n[3], double to
 }
 
 /*
- * The pairs of one pixel: in a frame with the normal n, the viewer, who looks along -z, in its xz plane. Returns how many there are;
- * with pairs NULL it only counts.
+ * The pairs of one pixel: in a frame with the normal n, the viewer, who looks along -z, in its xz plane. Returns how many there
+ * are; with pairs NULL it only counts.
  */
 static size_t pixel_pairs(const double n[3], const struct light *lights, int light_count, uint32_t pixel, size_t first,
                           struct pairs *pairs, struct shaded *shaded)
@@ -117,8 +117,8 @@ static bp_status lighting_make(int n, const struct reflectance *reflectance, str
 }
 
 /*
- * The albedo at one angle: midpoints in (u, v) of the half vector, which the lattice's cells are dense in as well. With m at u, v a
- * solid angle dm is 2 pi^2 u sin theta du dv, and that of w_o 4 <w_i, m> times it. Pairs beyond the horizon weigh 0.
+ * The albedo at one angle: midpoints in (u, v) of the half vector, which the lattice's cells are dense in as well. With m at u, v
+ * a solid angle dm is 2 pi^2 u sin theta du dv, and that of w_o 4 <w_i, m> times it. Pairs beyond the horizon weigh 0.
  */
 static bp_status albedo_make(int n, const struct reflectance *reflectance, struct deviation_reference *reference, bp_error *error)
 {

@@ -183,7 +183,7 @@ static bp_status spheres_write(FILE *out, const struct subject *subject, bp_erro
 	return status;
 }
 
-/* The plane theta_h x theta_d at one phi_d, theta_h to the right on the lattice's own scale, theta_d upwards; exposed by its 90th percentile. */
+/* The plane theta_h x theta_d at one phi_d, theta_h to the right as on the lattice, theta_d upwards; by its 90th percentile. */
 static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t k, bp_error *error)
 {
 	const struct expansion *table = &subject->table;
