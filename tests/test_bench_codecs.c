@@ -102,11 +102,10 @@ static void more_bytes_bring_zfp_closer(void **unused)
 	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
 	for (size_t budget = 1500; budget < 24000; budget *= 4) {
 		void *state;
-		double now;
 		material.budget_bytes = budget;
 		assert_int_equal(BASELINE_ZFP.fit(&BASELINE_ZFP, &material, &state, NULL), BP_OK);
 		assert_int_equal(BASELINE_ZFP.expand(state, &table, NULL), BP_OK);
-		now = largest_error(&lattice, &table);
+		double now = largest_error(&lattice, &table);
 		assert_true(now < error);
 		assert_true(BASELINE_ZFP.bytes(state) > bytes);
 		assert_in_range(BASELINE_ZFP.bytes(state), budget / 2, budget * 2);

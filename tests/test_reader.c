@@ -40,12 +40,11 @@ static void an_archive_tells_its_materials_without_loading_them(void **state)
 {
 	bp_archive *archive;
 	bp_material_info info = {.struct_bytes = sizeof info};
-	uint64_t before;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 5000);
 	archive = opened(fixture_path("a.bpk"));
 	assert_int_equal(bp_archive_count(archive), 4);
-	before = bp_archive_bytes_read(archive);
+	uint64_t before = bp_archive_bytes_read(archive);
 	assert_int_equal(before, 64 + 4096);
 	assert_int_equal(bp_archive_info(archive, 2, &info, NULL), BP_OK);
 	assert_int_equal(bp_archive_bytes_read(archive) - before, info.head_bytes);
@@ -130,12 +129,11 @@ static bp_status open_with(size_t at, uint64_t value, unsigned width)
 	size_t bytes;
 	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes);
 	bp_archive *archive = NULL;
-	bp_status status;
 	for (unsigned i = 0; i < width; i++)
 		file[at + i] = (uint8_t)(value >> 8 * i);
 	store_u32(file + 60, bytes_crc32(file, 60));
 	fixture_file_write(fixture_path("b.bpk"), file, bytes);
-	status = bp_archive_open(fixture_path("b.bpk"), &archive, NULL);
+	bp_status status = bp_archive_open(fixture_path("b.bpk"), &archive, NULL);
 	bp_archive_close(archive);
 	free(file);
 	return status;
@@ -189,7 +187,6 @@ static int count_problem(void *user, const bp_problem *problem)
 static void verify_names_each_damaged_material(void **state)
 {
 	size_t bytes;
-	uint8_t *file;
 	bp_archive *archive;
 	bp_material_info info = {.struct_bytes = sizeof info};
 	unsigned counts[2] = {0, 0};
@@ -200,7 +197,7 @@ static void verify_names_each_damaged_material(void **state)
 	assert_int_equal(bp_archive_verify(archive, 0, count_problem, counts, &error), BP_OK);
 	assert_true(bp_archive_bytes_read(archive) >= archive_header(archive)->file_bytes);
 	assert_int_equal(counts[0] + counts[1], 0);
-	file = fixture_file_read(fixture_path("a.bpk"), &bytes);
+	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes);
 	bp_archive_info(archive, 1, &info, NULL);
 	file[info.record_offset + info.record_bytes - 1] ^= 1;
 	bp_archive_info(archive, 3, &info, NULL);

@@ -137,10 +137,9 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	struct record_head head;
 	bp_material *material = NULL;
 	fenv_t before;
-	bp_status status;
 
 	options = options ? options : &whole;
-	status = options_check(options, error);
+	bp_status status = options_check(options, error);
 	if (status)
 		return status;
 	status = archive_record_head(archive, index, &entry, &head, error);

@@ -95,7 +95,6 @@ static bp_status lossless_fit(const struct baseline *self, const struct bench_ma
 	struct lossless_state *state = calloc(1, sizeof *state);
 	uint8_t *planes = NULL;
 	const uint8_t *plain = material->raw;
-	size_t capacity;
 	bp_status status = BP_OK;
 
 	if (!state)
@@ -112,7 +111,7 @@ static bp_status lossless_fit(const struct baseline *self, const struct bench_ma
 			memcpy(planes + c * cells * sizeof(double), material->lattice->rgb[c], cells * sizeof(double));
 		plain = planes;
 	}
-	capacity = codec->bound(state->plain_bytes);
+	size_t capacity = codec->bound(state->plain_bytes);
 	state->stream = malloc(capacity);
 	if (!state->stream) {
 		status = error_memory(error, capacity);

@@ -120,14 +120,13 @@ bp_status projection_make(const struct log_tensor *t, struct projection *q, bp_e
 {
 	const size_t H = t->dims.theta_h, D = t->dims.theta_d, P = t->dims.phi_d;
 	const size_t most = H > D ? (H > P ? H : P) : (D > P ? D : P);
-	size_t count;
 	double *gram;
 	bp_status status;
 
 	q->h = H < RANK_MAX ? H : RANK_MAX;
 	q->d = D < RANK_MAX ? D : RANK_MAX;
 	q->p = P < RANK_MAX ? P : RANK_MAX;
-	count = 3 * q->h * q->d * q->p + H * q->h + D * q->d + P * q->p + most * most + (D + q->d) * q->p;
+	size_t count = 3 * q->h * q->d * q->p + H * q->h + D * q->d + P * q->p + most * most + (D + q->d) * q->p;
 	q->core = malloc(count * sizeof *q->core);
 	if (!q->core)
 		return error_memory(error, count * sizeof *q->core);

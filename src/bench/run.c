@@ -130,10 +130,9 @@ static bp_status read_truth(const struct run *run, const char *name, struct latt
                             bp_error *error)
 {
 	char path[4096];
-	bp_status status;
 
 	snprintf(path, sizeof path, "%s/%s.binary", run->truth, name);
-	status = lattice_read_path(path, &(struct merl_reading){.any_dims = true}, truth, error);
+	bp_status status = lattice_read_path(path, &(struct merl_reading){.any_dims = true}, truth, error);
 	if (!status && !lattice_dims_equal(truth->dims, dims))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s has other extents than the input", path);
 	return status;

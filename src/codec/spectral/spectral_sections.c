@@ -106,7 +106,6 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 	struct encoding e = {.model = model->spectral, .watch = request->options->watch};
 	const uint32_t budget = request->record_bytes_max;
 	struct byte_buffer weights = {0};
-	uint64_t least;
 	bp_status status;
 
 	if (!e.model->coefficient[0])
@@ -118,7 +117,7 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 	weights_encode(&e.model->weights, &weights);
 	e.head_bytes =
 		record_head_size(request->name_bytes, e.layers, e.layers + 1) + fields_bytes(fields_version(e.model)) + weights.count;
-	least = e.head_bytes + e.layers * 8;
+	uint64_t least = e.head_bytes + e.layers * 8;
 	if (weights.failed)
 		status = error_memory(error, SPECTRAL_WEIGHTS);
 	else if (least > budget)
@@ -220,7 +219,6 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 	struct spectral_model *decoded = model->spectral = calloc(1, sizeof *decoded);
 	struct planes *planes = NULL;
 	uint32_t end = 0;
-	bp_status status;
 
 	if (!decoded)
 		return error_memory(error, sizeof *decoded);
@@ -229,7 +227,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 		                 count, model->layer_count);
 	decoded->dims = head->dims;
 	*failed = 0;
-	status = fields_read(&sections[0], decoded, error);
+	bp_status status = fields_read(&sections[0], decoded, error);
 	if (!status)
 		status = planes_create(head->dims, 0, &planes, error);
 	if (status)

@@ -102,13 +102,12 @@ static bp_status seen_cells(const struct lattice *lattice, struct lattice *out, 
 {
 	const size_t cells = lattice_cells(lattice->dims);
 	size_t count = 0;
-	bp_status status;
 
 	*out = *lattice;
 	*counted = malloc(cells);
 	if (!*counted)
 		return error_memory(error, cells);
-	status = lattice_seen(lattice->dims, *counted, error);
+	bp_status status = lattice_seen(lattice->dims, *counted, error);
 	for (size_t n = 0; !status && n < cells; n++)
 		count += (*counted)[n] &= lattice->valid[n];
 	if (count) {
@@ -196,11 +195,10 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 {
 	const float base[3] = {fitted->base[order[0]], fitted->base[order[1]], fitted->base[order[2]]};
 	float rotation[3][3];
-	bp_status status;
 
 	memcpy(fitted->coefficient[0], filled, 3 * lattice_cells(lattice->dims) * sizeof *filled);
 	stage_enter(STAGE_CLEAN);
-	status = watch_tell(options->watch, 0.5, error);
+	bp_status status = watch_tell(options->watch, 0.5, error);
 	if (status)
 		return status;
 	status = spectral_project(spectrum, lattice->dims, lattice->valid, base, &fitted->weights, fitted->limit,
@@ -242,7 +240,6 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	uint8_t *counted = NULL;
 	float *filled = NULL, rotation[3][3];
 	int order[3]; /* coefficient[k] is channel order[k], until it becomes field k */
-	bp_status status;
 
 	if (!fitted)
 		return error_memory(error, sizeof *fitted);
@@ -257,7 +254,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
 	stage_enter(STAGE_REGRESSION);
-	status = spectral_survey_draw(lattice, &sample, error);
+	bp_status status = spectral_survey_draw(lattice, &sample, error);
 	if (!status)
 		status = spectral_survey_colour(&sample, colour, error);
 	stage_enter(STAGE_CLEAN);

@@ -69,10 +69,9 @@ static bp_status archive_write(struct build *build, bool *written, bp_error *err
 	struct archive_writer *writer = NULL;
 	uint8_t *record = NULL;
 	size_t room = 0;
-	bp_status status;
 
 	items_sort(&build->items);
-	status = archive_writer_open(build->options->output, &writer, error);
+	bp_status status = archive_writer_open(build->options->output, &writer, error);
 	for (size_t i = 0; i < build->items.count && !status; i++) {
 		const struct item *item = &build->items.item[i];
 		if (item->state != ITEM_PACKED)

@@ -68,10 +68,9 @@ static bp_status record_get(const struct build *build, const char *name, const s
                             bp_error *error)
 {
 	const struct fit_options *options = &build->options->fit;
-	bp_status status;
 
 	delivery->origin = RECORD_RESUMED;
-	status = journal_take(&build->journal, name, &delivery->source, options, record, record_bytes, error);
+	bp_status status = journal_take(&build->journal, name, &delivery->source, options, record, record_bytes, error);
 	if (status || *record)
 		return status;
 	delivery->origin = RECORD_REUSED;
