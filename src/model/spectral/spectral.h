@@ -65,8 +65,6 @@ struct spectral_model {
 /* *out, for spectral_free, and the regression of each channel on the measured mean of the three. Nothing is kept on failure. */
 bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out,
                        struct colour_fit colour[3], bp_error *error);
-/* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
-float spectral_most(double unit);
 /*
  * Layers 0..layers-1 of a decoded model; BP_ERROR_ARGUMENT for one that was fitted. half: every second value along each axis
  * (extents even); *out has half the model's extents.
@@ -82,9 +80,6 @@ void spectral_free(struct spectral_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
 uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
-
-/* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
-float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest);
 
 /* spectral_denoise.c: draws coefficients that noise would explain towards 0; *noisy: there was any. span: spans.h, or NULL. */
 bp_status spectral_denoise(struct lattice_dims dims, const uint16_t *span, float *coefficient, bool *noisy, bp_error *error);

@@ -10,7 +10,8 @@
 #include "spectral_terms.h"
 #include "spectral_kernels.h"
 
-float spectral_most(double unit)
+/* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
+static float most_of(double unit)
 {
 	int exponent;
 	frexp(unit, &exponent);
@@ -92,7 +93,7 @@ static void values_take(void *user, const struct spectral_block *block)
 	float *const rgb[3] = {target->out->rgb[0] + at, target->out->rgb[1] + at, target->out->rgb[2] + at};
 
 	spectral_kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base,
-	                                        (const float(*)[3])m->rotation, spectral_most(m->unit), rgb, p);
+	                                        (const float(*)[3])m->rotation, most_of(m->unit), rgb, p);
 	for (int c = 0; c < 3 && block->alone; c++)
 		sides_fill(block, target->out->rgb[c] + block->row * p, sizeof(float), (uint32_t)p);
 }
@@ -119,7 +120,7 @@ static void codes_take(void *user, const struct spectral_block *block)
 	uint16_t *row = target->out + block->row * target->stride, *out = row + (size_t)block->column * (size_t)target->channels;
 
 	spectral_kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base,
-	                                       (const float(*)[3])m->rotation, spectral_most(m->unit), target->channels, out,
+	                                       (const float(*)[3])m->rotation, most_of(m->unit), target->channels, out,
 	                                       target->stride);
 	if (block->alone)
 		sides_fill(block, row, (size_t)target->channels * sizeof *row, target->cells);
