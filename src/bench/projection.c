@@ -120,7 +120,6 @@ bp_status projection_make(const struct log_tensor *t, struct projection *q, bp_e
 {
 	const size_t H = t->dims.theta_h, D = t->dims.theta_d, P = t->dims.phi_d;
 	const size_t most = H > D ? (H > P ? H : P) : (D > P ? D : P);
-	double *gram;
 	bp_status status;
 
 	q->h = H < RANK_MAX ? H : RANK_MAX;
@@ -133,7 +132,7 @@ bp_status projection_make(const struct log_tensor *t, struct projection *q, bp_e
 	q->basis_h = q->core + 3 * q->h * q->d * q->p;
 	q->basis_d = q->basis_h + H * q->h;
 	q->basis_p = q->basis_d + D * q->d;
-	gram = q->basis_p + P * q->p;
+	double *gram = q->basis_p + P * q->p;
 	gram_h(t, gram);
 	if ((status = leading_eigenvectors(gram, H, q->h, q->basis_h, error)))
 		goto out;

@@ -70,13 +70,12 @@ static bp_status sections_read(struct byte_reader *in, struct record_head *head,
 	for (uint32_t i = 0; i < head->section_count; i++) {
 		struct record_section *entry = &head->sections[i];
 		uint64_t at = in->at;
-		uint16_t zero;
 		entry->type = read_u16(in);
 		entry->codec = read_u16(in);
 		entry->version = read_u16(in);
 		entry->layer = read_u16(in);
 		entry->flags = read_u16(in);
-		zero = read_u16(in);
+		uint16_t zero = read_u16(in);
 		entry->offset = read_u32(in);
 		entry->bytes = read_u32(in);
 		entry->crc32 = read_u32(in);
