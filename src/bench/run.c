@@ -62,8 +62,8 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 	row->evaluated = method->evaluate && !method->prepare ? EVALUATED_MODEL : EVALUATED_TABLE;
 	if (method->prepare && (status = method->prepare(state, table, error)))
 		goto out;
-	status = method->evaluate ? time_model(method, state, run->pairs, REPEATS, &row->evaluate_ns, error)
-	                          : time_table(table, run->pairs, REPEATS, &row->evaluate_ns, error);
+	status = method->evaluate ? time_model(method, state, run->pairs, &row->evaluate_ns, error)
+	                          : time_table(table, run->pairs, &row->evaluate_ns, error);
 	if (!status)
 		status = comparison_measure(&run->plans, truth, table, &row->figures, NULL, error);
 out:
@@ -119,7 +119,7 @@ static void run_yardsticks(struct run *run, int at, const char *name, const stru
 		row = empty_row(at, METHOD_RAW_TABLE);
 		row.bytes = 3.0 * sizeof(double) * (double)lattice_cells(lattice->dims);
 		row.evaluated = EVALUATED_TABLE;
-		if (time_raw_table(lattice, run->pairs, REPEATS, &row.evaluate_ns, &error))
+		if (time_raw_table(lattice, run->pairs, &row.evaluate_ns, &error))
 			complain(run, name, "raw-table", &error);
 		else
 			fwrite(&row, sizeof row, 1, run->rows);

@@ -61,9 +61,9 @@ static inline void range_encode_with(struct range_encoder *encoder, uint32_t p, 
 	range_encoder_refill(encoder);
 }
 /* Bytes that the stream would take if it were ended now. */
-static inline size_t range_encoder_bytes(const struct range_encoder *encoder, size_t start)
+static inline size_t range_encoder_bytes(const struct range_encoder *encoder)
 {
-	return encoder->out->count - start + (size_t)encoder->pending + 4;
+	return encoder->out->count + (size_t)encoder->pending + 4;
 }
 void range_encoder_end(struct range_encoder *encoder);
 

@@ -177,19 +177,18 @@ void sphere_plan_render(const struct sphere_plan *plan, const struct lookup_tabl
 	}
 }
 
-bp_status sphere_render(enum lighting lighting, const struct lookup_table *const *tables, int count,
-                        struct sphere_image *const *images, bp_error *error)
+bp_status sphere_render(enum lighting lighting, const struct lookup_table *table, struct sphere_image *image, bp_error *error)
 {
 	struct light lights[LIGHTS_MAX];
-	uint32_t size = images[0]->size, light_count = (uint32_t)lights_make(lighting, lights);
+	uint32_t size = image->size, light_count = (uint32_t)lights_make(lighting, lights);
 	uint32_t rows = BAND_PLACES / (size * light_count);
 	rows = rows < 1 ? 1 : rows;
 	for (uint32_t y = 0; y < size; y += rows) {
 		struct sphere_plan *plan;
-		bp_status status = sphere_plan_make(lighting, size, y, rows < size - y ? rows : size - y, tables[0]->dims, &plan, error);
+		bp_status status = sphere_plan_make(lighting, size, y, rows < size - y ? rows : size - y, table->dims, &plan, error);
 		if (status != BP_OK)
 			return status;
-		sphere_plan_render(plan, tables, count, images);
+		sphere_plan_render(plan, &table, 1, &image);
 		sphere_plan_free(plan);
 	}
 	return BP_OK;

@@ -48,7 +48,6 @@ void sphere_plan_render(const struct sphere_plan *plan, const struct lookup_tabl
                         struct sphere_image *const *images);
 
 /* A whole image without a plan of one's own: works through bands of rows in bounded memory (about 100 MB). */
-bp_status sphere_render(enum lighting lighting, const struct lookup_table *const *tables, int count,
-                        struct sphere_image *const *images, bp_error *error);
+bp_status sphere_render(enum lighting lighting, const struct lookup_table *table, struct sphere_image *image, bp_error *error);
 
 #endif

@@ -70,7 +70,7 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 	range_encoder_start(encoder, out);
 	kept = *encoder;
 	size_t kept_count = out->count;
-	uint64_t now = bytes + range_encoder_bytes(encoder, 0);
+	uint64_t now = bytes + range_encoder_bytes(encoder);
 	e->end[l] = *unit;
 	while (*unit < units && !out->failed &&
 	       (last ? now <= 3 * (uint64_t)e->limit[l] : now + 2 * *largest_unit + 16 <= e->limit[l])) {
@@ -80,7 +80,7 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 		if (a->status)
 			return false;
 		planes_encode_unit(e->planes, coder, (*unit)++);
-		now = bytes + range_encoder_bytes(encoder, 0);
+		now = bytes + range_encoder_bytes(encoder);
 		*largest_unit = now - before > *largest_unit ? now - before : *largest_unit;
 		if (!last || now <= e->limit[l]) {
 			kept = *encoder;

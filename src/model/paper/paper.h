@@ -75,8 +75,7 @@ void sparse_field_free(struct sparse_field *field);
 void sparse_fields_free(struct sparse_field *fields, uint32_t count); /* the array too; NULL is allowed */
 
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h of a channel over the whole lattice: the model in units of its scale; >= 0 and finite. */
-bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table,
-                               bp_error *error);
+bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, float *table, bp_error *error);
 /* See model_expand. Channels that are not there become like the one that is. */
 bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out,
                        bp_error *error);

@@ -92,11 +92,10 @@ static void slice_expand(struct slices *s, uint32_t i, float *out)
 	}
 }
 
-bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table,
-                               bp_error *error)
+bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, float *table, bp_error *error)
 {
 	struct slices s;
-	bp_status status = slices_begin(dims, channel, layers, &s, error);
+	bp_status status = slices_begin(dims, channel, PAPER_LAYERS, &s, error);
 
 	for (uint32_t i = 0; !status && i < dims.theta_h; i++)
 		slice_expand(&s, i, table + lattice_index(dims, i, 0, 0));

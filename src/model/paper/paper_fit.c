@@ -158,7 +158,7 @@ bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, st
 		status = watch_tell(watch, 0.05 + 0.3 * c, error);
 		status = status ? status : channel_fit(&w, lattice, c, &paper->channel[c], error);
 		stage_enter(STAGE_REGRESSION);
-		status = status ? status : paper_channel_expand(paper->dims, &paper->channel[c], PAPER_LAYERS, w.value, error);
+		status = status ? status : paper_channel_expand(paper->dims, &paper->channel[c], w.value, error);
 		status = status ? status : robust_fit_channel(lattice, c, w.value, paper->channel[c].scale, &colour[c], error);
 		if (!status)
 			colour_settle(&w, lattice, c, &paper->channel[c], &colour[c]);
