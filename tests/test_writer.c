@@ -1,6 +1,5 @@
 #include "archive_fixture.h"
 
-#include <errno.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

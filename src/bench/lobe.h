@@ -22,6 +22,8 @@
 #ifndef BENCH_LOBE_H
 #define BENCH_LOBE_H
 
+#include <stdlib.h>
+
 #include "angles.h"
 #include "baseline.h"
 

@@ -6,7 +6,6 @@
  * record's.
  */
 #include <stdlib.h>
-#include <string.h>
 
 #include "codec/record.h"
 #include "error.h"

@@ -1,6 +1,5 @@
 #include "section.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "error.h"

@@ -1,7 +1,6 @@
 /* paper_sections.c: the paper's model as sections (FORMAT.md, "Profile 1"): four of every channel. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "model/paper/paper.h"

@@ -1,7 +1,6 @@
 #include "encoding.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "error.h"
 #include "model/math/fast_math.h"

@@ -1,7 +1,5 @@
 #include "sample.h"
 
-#include <stdlib.h>
-
 #include "sampler.h"
 
 /* sin and cos of t quarter turns, t in [0, 2]; absolute error below 2e-7. Chebyshev fits about t = 1. */

@@ -7,7 +7,6 @@
 #include "render/picture.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct render_options {
 	enum lighting lighting;
