@@ -8,7 +8,6 @@
 #include <zstd.h>
 
 #include "error.h"
-#include "merl/merl_file.h"
 #include "baseline.h"
 
 enum { ZLIB_LEVEL = 6, ZSTD_LEVEL = 9, XZ_LEVEL = 0 };

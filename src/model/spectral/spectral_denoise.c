@@ -14,7 +14,6 @@
 #include <string.h>
 
 #include "error.h"
-#include "spans.h"
 #include "spectral.h"
 #include "model/math/fast_math.h"
 #include "spectral_kernels.h"
