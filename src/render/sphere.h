@@ -26,6 +26,13 @@ struct sphere_image {
 	size_t covered_count;
 };
 
+/* The normal that a pixel sees; false when it is not covered. */
+bool sphere_normal(uint32_t size, uint32_t x, uint32_t y, double normal[3]);
+/* The direction to a light from the point of the sphere whose normal is n; returns its irradiance there at normal incidence. */
+double sphere_light(const struct light *light, const double n[3], double to[3]);
+#define SPHERE_COSINE_ABOVE 1e-3 /* lights that come in lower than this count nothing */
+
+/* All 0, in the unit 1, with the pixels marked that are covered. */
 bp_status sphere_image_alloc(uint32_t size, struct sphere_image *out, bp_error *error);
 void sphere_image_free(struct sphere_image *image);
 

@@ -9,6 +9,7 @@
 #include "merl/merl_file.h"
 #include "merl/sha256.h"
 #include "merl/source_kind.h"
+#include "render/comparison.h"
 #include "render/figure.h"
 
 #include <math.h>
@@ -129,11 +130,8 @@ static bp_status show_measure(struct show *show, bp_error *error)
 		free(counting);
 		return status;
 	}
-	struct lattice_dims a = show->truth->dims, b = material->table.dims;
-	if (!lattice_dims_equal(a, b))
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d,
-		                 a.phi_d, b.theta_h, b.theta_d, b.phi_d);
+	if (comparison_dims_check(show->truth->dims, material->table.dims, error))
+		return BP_ERROR_BAD_INPUT;
 	error_profile(show->truth, &material->table, show->error_after);
 	show->figure.error_after = show->error_after;
 	if (material->model->profile == PROFILE_PAPER) {
