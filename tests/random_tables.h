@@ -7,13 +7,7 @@
 #include <stdlib.h>
 
 #include "model/spectral/spectrum_inverse.h"
-
-static uint64_t state = 5;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
+#include "random.h"
 
 static const struct lattice_dims DIMS[] = {{4, 4, 4},   {5, 7, 9},    {15, 16, 5},  {16, 15, 6},
                                            {31, 33, 7}, {29, 18, 33}, {90, 30, 20}, {4, 60, 17}};

@@ -9,15 +9,9 @@
 #include <cmocka.h>
 
 #include "model/spectral/spectral_kernels.h"
+#include "random.h"
 
 enum { N = 203 };
-
-static uint64_t state = 5;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
 
 static void random_floats(float *x, size_t n)
 {

@@ -15,15 +15,10 @@
 #include "model/math/kernels.h"
 #include "model/table/table_parts.h"
 #include "trilinear.h"
+#define RANDOM_SEED 11
+#include "random.h"
 
-static uint64_t state = 11;
 enum { COUNT = 200 };
-
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
 
 static void hemisphere(float out[3])
 {
