@@ -18,7 +18,7 @@
 /*
  * span[theta_h theta_d], each of P's parity: the cells k with cos theta_h cos theta_d - sin theta_h sin theta_d |cos phi_d| above
  * `limit`, the angles at their lower end and |cos phi_d| at its least in the cell; at least 1, or 2 where P is even: a
- * row that cannot be seen keeps its middle, which those beside it are interpolated with.
+ * row that cannot be seen keeps its middle, which those beside it are interpolated with. limit 0: rows are whole.
  */
 #define SPAN_MARGIN 0x1p-30f /* the least limit: so that no rounding decides where a corner lies on the horizon itself */
 void spans_find(struct lattice_dims dims, float limit, uint16_t *span);

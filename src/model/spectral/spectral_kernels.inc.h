@@ -17,7 +17,6 @@ const struct spectral_kernels KERNEL(spectral_kernels) = {
 	.cosine_gather = KERNEL(cosine_gather),
 	.cosine_scatter = KERNEL(cosine_scatter),
 	.cdf97_forward = KERNEL(cdf97_forward),
-	.spectrum_spread = KERNEL(spectrum_spread),
 	.cdf97_plane = KERNEL(cdf97_plane),
 	.spectral_logs = KERNEL(spectral_logs),
 	.spectral_largest = KERNEL(spectral_largest),

@@ -1,5 +1,5 @@
 /*
- * spectrum_rows.h: tables from spectra whose rows are cut at the horizon (spans.h), of which most coefficients are 0.
+ * spectrum_rows.h: tables from spectra, their rows cut or whole (spans.h), of which most coefficients are 0.
  *
  * Rows of different spans have different cosines, so the wavelets come first, on planes of SPECTRUM_BLOCK harmonics, of those
  * that are in use; then the cosines, row by row, up to the last harmonic that is not 0 there.
