@@ -81,7 +81,7 @@ void spectral_free(struct spectral_model *model); /* NULL is allowed */
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
 uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
 
-/* spectral_denoise.c: draws coefficients that noise would explain towards 0; *noisy: there was any. span: spans.h, or NULL. */
+/* spectral_denoise.c: draws coefficients that noise would explain towards 0; *noisy: there was any. span: spans.h. */
 bp_status spectral_denoise(struct lattice_dims dims, const uint16_t *span, float *coefficient, bool *noisy, bp_error *error);
 
 /*
