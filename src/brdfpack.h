@@ -323,9 +323,9 @@ typedef enum bp_form {
 	BP_FORM_EXPANDED = 0,
 	/* 8 bits per value, shared scales and colours: some 0.001 in log RMSE more, 0.01 where channels end at 0; 2.6 MB / 2.0 MB */
 	BP_FORM_COMPACT = 1,
-	/* expanded, but only every second value along each axis, each where it stands, and quicker to load: for a look, with the first
-	   layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an extent of the lattice is odd, all values are
-	   loaded */
+	/* expanded, but only every second value along each axis, each where it stands, and quicker to load: for a look, with the
+	   first layer; 1.1 MB, in a page of 2 MB where the system gives one, / 0.4 MB. Where an extent of the lattice is odd, all
+	   values are loaded */
 	BP_FORM_PREVIEW = 2
 } bp_form;
 

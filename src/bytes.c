@@ -15,12 +15,11 @@ size_t byte_reader_left(const struct byte_reader *reader) { return reader->count
 
 const uint8_t *read_span(struct byte_reader *reader, size_t count)
 {
-	const uint8_t *span;
 	if (reader->failed || count > byte_reader_left(reader)) {
 		reader->failed = true;
 		return NULL;
 	}
-	span = reader->bytes + reader->at;
+	const uint8_t *span = reader->bytes + reader->at;
 	reader->at += count;
 	return span;
 }
@@ -73,7 +72,6 @@ static uint8_t *buffer_extend(struct byte_buffer *buffer, size_t count)
 		return NULL;
 	if (count > buffer->capacity - buffer->count) {
 		size_t capacity = buffer->capacity ? buffer->capacity : 256;
-		uint8_t *grown;
 		while (capacity - buffer->count < count) {
 			if (capacity > SIZE_MAX / 2) {
 				buffer->failed = true;
@@ -81,7 +79,7 @@ static uint8_t *buffer_extend(struct byte_buffer *buffer, size_t count)
 			}
 			capacity *= 2;
 		}
-		grown = realloc(buffer->bytes, capacity);
+		uint8_t *grown = realloc(buffer->bytes, capacity);
 		if (!grown) {
 			buffer->failed = true;
 			return NULL;

@@ -9,10 +9,9 @@
 size_t name_character(const uint8_t *s, size_t left, uint32_t *code)
 {
 	size_t length = s[0] < 0x80 ? 1 : s[0] < 0xC2 ? 0 : s[0] < 0xE0 ? 2 : s[0] < 0xF0 ? 3 : s[0] < 0xF5 ? 4 : 0;
-	uint32_t value;
 	if (!length || length > left)
 		return 0;
-	value = length == 1 ? s[0] : s[0] & (0xFFu >> (length + 1));
+	uint32_t value = length == 1 ? s[0] : s[0] & (0xFFu >> (length + 1));
 	for (size_t i = 1; i < length; i++) {
 		if ((s[i] & 0xC0) != 0x80)
 			return 0;

@@ -258,7 +258,7 @@ bp_status output_file_commit(struct output_file *out, bp_error *error)
 		const ssize_t got = read(out->fd, &more, 1);
 		status = got < 0 ? refuse(out->target, "read", error) : got > 0 ? refuse_taken(out->target, error) : BP_OK;
 	} else {
-		/* A network file system reports a full disk when a file is closed: a second descriptor hears it before the file has its place. */
+		/* A network file system tells of a full disk at the close: a second descriptor hears it before the file has its place. */
 		const int twin = dup(out->fd);
 		if (twin >= 0 && close(twin) != 0)
 			status = refuse(out->target, "write", error);

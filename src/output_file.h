@@ -52,7 +52,7 @@ bp_status output_file_commit_synced(struct output_file *out, bp_error *error);
 /* A file of just these bytes: all of the above. */
 bp_status output_file_write_whole(const char *path, enum output_rule rule, const void *bytes, size_t count, bp_error *error);
 
-/* Removes what was written and frees *out. Allowed after every other call, any number of times, and on a zeroed struct with fd -1. */
+/* Removes what was written, frees *out. Allowed after any other call, any number of times, and on a zeroed struct with fd -1. */
 void output_file_discard(struct output_file *out);
 
 /*

@@ -19,7 +19,7 @@ static bool in_ranges(uint32_t code, const struct range *ranges, size_t count)
 }
 #define IN(code, ranges) in_ranges(code, ranges, sizeof ranges / sizeof *ranges)
 
-/* Controls of 7 and 8 bits; soft hyphen; Arabic letter mark; zero-width and bidirectional marks; separators; invisible operators; tags. */
+/* Controls; soft hyphen; Arabic letter mark; zero-width, bidirectional marks; separators; hidden operators; tags. */
 static const struct range UNSEEN[] = {{0x00, 0x1F},     {0x7F, 0x9F},     {0xAD, 0xAD},       {0x61C, 0x61C},
                                       {0x180E, 0x180E}, {0x200B, 0x200F}, {0x2028, 0x202E},   {0x2060, 0x206F},
                                       {0xFEFF, 0xFEFF}, {0xFFF9, 0xFFFB}, {0x1D173, 0x1D17A}, {0xE0000, 0xE007F}};

@@ -16,15 +16,14 @@
 #error "brdfpack needs gcc 12 or clang 14, or newer: older ones of gcc have no __builtin_shufflevector"
 #endif
 #if defined __FLT_EVAL_METHOD__ && __FLT_EVAL_METHOD__ != 0
-#error \
-	"brdfpack needs arithmetic in the precision of its operands; on 32-bit x86 compile with -msse2 -mfpmath=sse, on s390x with -fexcess-precision=fast"
+#error "brdfpack needs arithmetic in the precision of its operands: 32-bit x86 -msse2 -mfpmath=sse, s390x -fexcess-precision=fast"
 #endif
 
 struct system_file;
 
 /* Opens a regular file for reading; messages do not name it. */
 bp_status system_file_open(const char *path, struct system_file **out, uint64_t *bytes, bp_error *error);
-/* Reads `count` bytes at `offset`, or as many as there are: *got. BP_ERROR_IO otherwise, with the offset and the system's words alone. */
+/* Reads `count` bytes at `offset`, or as many as there are: *got. BP_ERROR_IO otherwise, with offset and the system's words. */
 bp_status system_file_read(struct system_file *file, uint64_t offset, void *bytes, size_t count, size_t *got, bp_error *error);
 /* Bytes that the file has now; `otherwise` where the system does not say. */
 uint64_t system_file_bytes(struct system_file *file, uint64_t otherwise);

@@ -100,13 +100,12 @@ FIXTURE void fixture_archive(const char *path, const char *const *names, size_t 
 FIXTURE uint8_t *fixture_file_read(const char *path, size_t *count)
 {
 	FILE *file = fopen(path, "rb");
-	uint8_t *bytes;
 	long size;
 	assert_non_null(file);
 	fseek(file, 0, SEEK_END);
 	size = ftell(file);
 	rewind(file);
-	bytes = malloc((size_t)size + 1);
+	uint8_t *bytes = malloc((size_t)size + 1);
 	assert_int_equal(fread(bytes, 1, (size_t)size, file), (size_t)size);
 	fclose(file);
 	*count = (size_t)size;

@@ -18,15 +18,10 @@
 
 #include "model/sample/albedo.h"
 #include "model/sample/sample.h"
+#define RANDOM_SEED 13
+#include "random.h"
 
 #define ORACLE __attribute__((unused)) static
-
-ORACLE uint64_t state = 13;
-ORACLE double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
 
 struct material {
 	struct table *table;

@@ -29,37 +29,14 @@ static struct lattice make_table(void)
 	return lattice;
 }
 
-static void lossless_codecs_give_the_planes_back(void **unused)
-{
-	const struct baseline *const codecs[] = {&BASELINE_ZLIB, &BASELINE_ZSTD, &BASELINE_XZ};
-	struct lattice lattice = make_table();
-	const struct bench_material material = {.name = "planes", .lattice = &lattice};
-	struct expansion table;
-	(void)unused;
-
-	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
-	for (int n = 0; n < 3; n++) {
-		void *state;
-		assert_int_equal(codecs[n]->fit(codecs[n], &material, &state, NULL), BP_OK);
-		assert_in_range(codecs[n]->bytes(state), 1, 3 * 8 * lattice_cells(SMALL) + 100);
-		assert_int_equal(codecs[n]->expand(state, &table, NULL), BP_OK);
-		for (int c = 0; c < 3; c++)
-			for (size_t cell = 0; cell < lattice_cells(SMALL); cell++)
-				assert_true(table.rgb[c][cell] == (float)lattice.rgb[c][cell]);
-		codecs[n]->free_state(state);
-	}
-	expansion_free(&table);
-	lattice_free(&lattice);
-}
-
 static void lossless_codecs_read_a_files_bytes_with_its_scale(void **unused)
 {
 	const size_t cells = lattice_cells(SMALL), bytes = 12 + 24 * cells;
 	struct lattice lattice = make_table();
 	uint8_t *raw = calloc(1, bytes);
 	const struct bench_material material = {.name = "file", .lattice = &lattice, .raw = raw, .raw_bytes = bytes};
+	const struct baseline *const codecs[] = {&BASELINE_ZLIB, &BASELINE_ZSTD, &BASELINE_XZ};
 	struct expansion table;
-	void *state;
 	(void)unused;
 
 	assert_non_null(raw);
@@ -68,12 +45,20 @@ static void lossless_codecs_read_a_files_bytes_with_its_scale(void **unused)
 		memcpy(raw + 12 + 8 * n, &stored, sizeof stored);
 	}
 	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
-	assert_int_equal(BASELINE_ZSTD.fit(&BASELINE_ZSTD, &material, &state, NULL), BP_OK);
-	assert_int_equal(BASELINE_ZSTD.expand(state, &table, NULL), BP_OK);
-	assert_true(table.rgb[0][0] == 0); /* -1: not measured */
-	assert_true(table.rgb[0][1] == 2);
-	assert_true(fabs((double)table.rgb[2][3] - 1.66 * (double)(2 * cells + 4)) < 1e-6 * 1.66 * (double)(2 * cells));
-	BASELINE_ZSTD.free_state(state);
+	for (int n = 0; n < 3; n++) {
+		void *state;
+		assert_int_equal(codecs[n]->fit(codecs[n], &material, &state, NULL), BP_OK);
+		assert_in_range(codecs[n]->bytes(state), 1, bytes + 100);
+		assert_int_equal(codecs[n]->expand(state, &table, NULL), BP_OK);
+		for (size_t c = 0; c < 3; c++)
+			for (size_t cell = 0; cell < cells; cell++) {
+				double stored;
+				memcpy(&stored, raw + 12 + 8 * (c * cells + cell), sizeof stored);
+				assert_true(table.rgb[c][cell] == (stored > 0 ? (float)(stored * MERL_SCALE[c]) : 0)); /* -1: not measured */
+			}
+		assert_true(table.rgb[0][1] == 2);
+		codecs[n]->free_state(state);
+	}
 	expansion_free(&table);
 	free(raw);
 	lattice_free(&lattice);
@@ -102,11 +87,10 @@ static void more_bytes_bring_zfp_closer(void **unused)
 	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
 	for (size_t budget = 1500; budget < 24000; budget *= 4) {
 		void *state;
-		double now;
 		material.budget_bytes = budget;
 		assert_int_equal(BASELINE_ZFP.fit(&BASELINE_ZFP, &material, &state, NULL), BP_OK);
 		assert_int_equal(BASELINE_ZFP.expand(state, &table, NULL), BP_OK);
-		now = largest_error(&lattice, &table);
+		double now = largest_error(&lattice, &table);
 		assert_true(now < error);
 		assert_true(BASELINE_ZFP.bytes(state) > bytes);
 		assert_in_range(BASELINE_ZFP.bytes(state), budget / 2, budget * 2);
@@ -122,7 +106,6 @@ static void more_bytes_bring_zfp_closer(void **unused)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(lossless_codecs_give_the_planes_back),
 		cmocka_unit_test(lossless_codecs_read_a_files_bytes_with_its_scale),
 		cmocka_unit_test(more_bytes_bring_zfp_closer),
 	};

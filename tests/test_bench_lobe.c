@@ -177,11 +177,10 @@ static void check_recovery_by(enum lobe_objective objective, const struct lobe_m
                               const float *diffuse, const float *specular)
 {
 	struct lattice lattice = make_table(model, shape, diffuse, specular);
-	struct lobe_state *found;
 	void *state;
 
 	assert_int_equal(lobe_fit(model, &lattice, objective, &state, NULL), BP_OK);
-	found = state;
+	struct lobe_state *found = state;
 	for (int n = 0; n < model->shape_count; n++)
 		assert_close(found->shape[n], shape[n], 1e-3);
 	for (int c = 0; c < 3; c++) {
@@ -225,7 +224,6 @@ static void invalid_cells_take_no_part_in_a_fit(void **state)
 {
 	const float shape[3] = {0.35F};
 	struct lattice lattice = make_table(&LOBE_WARD, shape, DIFFUSE, SPECULAR);
-	struct lobe_state *found;
 	void *fitted;
 	(void)state;
 
@@ -234,7 +232,7 @@ static void invalid_cells_take_no_part_in_a_fit(void **state)
 		lattice.rgb[0][cell] = 1e6;
 	}
 	assert_int_equal(lobe_fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
-	found = fitted;
+	struct lobe_state *found = fitted;
 	assert_close(found->shape[0], shape[0], 1e-3);
 	assert_close(found->diffuse[0], DIFFUSE[0], 1e-3);
 	free(fitted);
@@ -256,7 +254,6 @@ static void a_table_without_a_valid_cell_is_refused(void **state)
 static void a_black_table_gives_a_black_model(void **state)
 {
 	struct lattice lattice;
-	struct lobe_state *found;
 	void *fitted;
 	(void)state;
 
@@ -266,7 +263,7 @@ static void a_black_table_gives_a_black_model(void **state)
 		lattice.valid[cell] = 1;
 	}
 	assert_int_equal(lobe_fit(&LOBE_COOK_TORRANCE, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
-	found = fitted;
+	struct lobe_state *found = fitted;
 	for (int c = 0; c < 3; c++)
 		assert_true(found->diffuse[c] == 0 && found->specular[c] == 0);
 	free(fitted);

@@ -6,7 +6,6 @@ static void values_come_back_as_written(void **state)
 {
 	struct byte_buffer out = {0};
 	struct byte_reader in;
-	double nan_kept;
 	(void)state;
 	write_u8(&out, 0xA5);
 	write_u16(&out, 0xBEEF);
@@ -24,7 +23,7 @@ static void values_come_back_as_written(void **state)
 	assert_true(read_u64(&in) == UINT64_C(0x0123456789ABCDEF));
 	assert_true(read_f32(&in) == -1.5f);
 	assert_true(read_f64(&in) == 0.1);
-	nan_kept = read_f64(&in);
+	double nan_kept = read_f64(&in);
 	assert_true(isnan(nan_kept));
 	assert_memory_equal(read_span(&in, 3), "abc", 3);
 	assert_int_equal(read_u16(&in), 0);

@@ -12,13 +12,7 @@
 #include "model/spectral/cosines.h"
 #include "model/spectral/spectral_kernels.h"
 #include "model/spectral/spectrum.h"
-
-static uint64_t state = 5;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
+#include "random.h"
 
 static void expect_the_sum(uint32_t n, size_t rows, float base)
 {

@@ -9,13 +9,8 @@
 
 #include "model/table/direction.h"
 #include "trilinear.h"
-
-static uint64_t state = 7;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
+#define RANDOM_SEED 7
+#include "random.h"
 
 static const struct lattice_dims DIMS = {90, 90, 180};
 #define PI 3.14159265358979323846264338327950288L

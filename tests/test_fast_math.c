@@ -9,13 +9,8 @@
 #include <cmocka.h>
 
 #include "model/math/fast_math.h"
-
-static uint64_t state = 1;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
+#define RANDOM_SEED 1
+#include "random.h"
 
 static void the_double_logarithm_keeps_its_bound(void **user)
 {

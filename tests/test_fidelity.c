@@ -6,19 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
 #include "model/fidelity.h"
 #include "model/fidelity_kernels.h"
-
-static uint64_t state = 5;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
+#include "random.h"
 
 struct pair {
 	struct lattice truth;

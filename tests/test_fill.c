@@ -4,20 +4,13 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
 #include "model/math/fill.h"
 #include "model/math/fill_kernels.h"
-
-static uint64_t state = 11;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
+#define RANDOM_SEED 11
+#include "random.h"
 
 static void fill_once(uint32_t rows, uint32_t columns, float *plane, const uint8_t *valid, float empty)
 {

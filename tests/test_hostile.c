@@ -44,15 +44,13 @@ static void nothing_false_is_told(const char *path)
 static void every_truncation_is_noticed(void **state)
 {
 	size_t bytes;
-	uint8_t *file;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 3, 9);
-	file = fixture_file_read(fixture_path("a.bpk"), &bytes);
+	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes);
 	for (size_t count = 0; count < bytes; count++) {
 		bp_error error = {0};
-		bp_status status;
 		fixture_file_write(fixture_path("t.bpk"), file, count);
-		status = read_all(fixture_path("t.bpk"), &error);
+		bp_status status = read_all(fixture_path("t.bpk"), &error);
 		assert_int_equal(status, count < 8 ? BP_ERROR_NOT_OURS : BP_ERROR_CORRUPT);
 		assert_int_equal(error.offset, count < 8 ? 0 : count);
 	}
@@ -65,13 +63,11 @@ static void every_truncation_is_noticed(void **state)
 static void every_flipped_bit_is_noticed_and_nothing_false_is_told(void **state)
 {
 	size_t bytes;
-	uint8_t *file;
-	FILE *damaged;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 3, 9);
-	file = fixture_file_read(fixture_path("a.bpk"), &bytes);
+	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes);
 	fixture_file_write(fixture_path("f.bpk"), file, bytes);
-	damaged = fopen(fixture_path("f.bpk"), "r+b");
+	FILE *damaged = fopen(fixture_path("f.bpk"), "r+b");
 	assert_non_null(damaged);
 	setbuf(damaged, NULL);
 	for (size_t bit = 0; bit < 8 * bytes; bit++) {
@@ -96,12 +92,11 @@ static bp_status verify_with_page(size_t at, uint64_t value, unsigned width)
 	size_t bytes;
 	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes), *page = file + bytes - PAGE_BYTES;
 	bp_error error = {0};
-	bp_status status;
 	for (unsigned i = 0; i < width; i++)
 		page[at + i] = (uint8_t)(value >> 8 * i);
 	store_u32(page + PAGE_BYTES - 4, bytes_crc32(page, PAGE_BYTES - 4));
 	fixture_file_write(fixture_path("p.bpk"), file, bytes);
-	status = read_all(fixture_path("p.bpk"), &error);
+	bp_status status = read_all(fixture_path("p.bpk"), &error);
 	nothing_false_is_told(fixture_path("p.bpk"));
 	free(file);
 	return status;
@@ -205,6 +200,16 @@ static void an_index_that_contradicts_itself_is_refused(void **state)
 	fixture_file_write(fixture_path("p.bpk"), file, bytes);
 	assert_int_equal(read_all(fixture_path("p.bpk"), NULL), BP_ERROR_CORRUPT);
 	key[254]++;
+
+	/* the root is its own child: told for what it is, before it is read again */
+	const uint32_t first = load_u32(root + PAGE_HEAD_BYTES);
+	bp_error error;
+	store_u32(root + PAGE_HEAD_BYTES, first + 2);
+	page_seal(root);
+	fixture_file_write(fixture_path("p.bpk"), file, bytes);
+	assert_int_equal(read_all(fixture_path("p.bpk"), &error), BP_ERROR_CORRUPT);
+	assert_non_null(strstr(error.message, "a child page follows its parent"));
+	store_u32(root + PAGE_HEAD_BYTES, first);
 	page_seal(root);
 
 	/* the second leaf ends before the last material */

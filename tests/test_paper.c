@@ -17,17 +17,12 @@
 #include "model/model.h"
 #include "model/paper/paper.h"
 #include "model/paper/sparse_fit.h"
+#define RANDOM_SEED 23
+#include "random.h"
 
 static const struct fit_options OPTIONS = {.profile = PROFILE_PAPER, .budget_bytes = 60400, .effort = 5};
 static const struct lattice_dims SMALL[] = {{4, 4, 4}, {12, 10, 16}, {5, 7, 9}, {9, 33, 5}};
 enum { SMALL_COUNT = sizeof SMALL / sizeof *SMALL };
-
-static uint64_t state = 23;
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
 
 /* A smooth glossy material: a diffuse part, a lobe along theta_h, a Fresnel rise along theta_d, a touch of phi_d. */
 static double glossy(struct lattice_dims d, uint32_t i, uint32_t j, uint32_t k, int c)

@@ -88,9 +88,9 @@ static bp_status pack(const struct model *model, uint32_t budget, struct packed 
 {
 	struct encode_request request = {.name_bytes = 11, .record_bytes_max = budget};
 	struct model *decoded = NULL;
-	bp_status status;
 	memset(out, 0, sizeof *out);
-	status = PAPER_ENCODER.encode(model, &request, &out->sections, &out->head.layer_count, &out->head.left_out, &decoded, error);
+	bp_status status =
+		PAPER_ENCODER.encode(model, &request, &out->sections, &out->head.layer_count, &out->head.left_out, &decoded, error);
 	if (status)
 		return status;
 	out->record_bytes = record_head_size(11, out->head.layer_count, out->sections.count);
@@ -109,14 +109,13 @@ static bp_status unpack(const struct packed *from, struct lattice_dims dims, uin
 	struct section_bytes sections[RECORD_SECTIONS_MAX];
 	uint32_t count = 0, failed = UINT32_MAX;
 	struct model *model = calloc(1, sizeof *model);
-	bp_status status;
 	model->dims = dims;
 	for (; count < from->sections.count && from->sections.entry[count].layer < layers; count++)
 		sections[count] = (struct section_bytes){&from->sections.entry[count], from->sections.bytes[count].bytes};
 	model->profile = PROFILE_PAPER;
 	struct record_head head = from->head;
 	head.channels = wanted_channels;
-	status = PAPER_CODEC.decode(&head, sections, count, model, &failed, error);
+	bp_status status = PAPER_CODEC.decode(&head, sections, count, model, &failed, error);
 	if (status) {
 		model_drop(model);
 		return status;
@@ -355,11 +354,10 @@ static void a_claim_of_millions_of_coefficients_allocates_nothing(void **state)
 	struct lattice_dims dims = {256, 256, 256};
 	struct packed packed;
 	struct model *model = model_make(dims, 0, 0, 1), *again = NULL;
-	struct byte_buffer *out;
 	(void)state;
 	assert_int_equal(pack(model, 60400, &packed, NULL), BP_OK);
 	packed.head.left_out = 6;
-	out = section_add(&packed.sections, SECTION_PAIR_HD, 2, 1, 0, 1, NAN);
+	struct byte_buffer *out = section_add(&packed.sections, SECTION_PAIR_HD, 2, 1, 0, 1, NAN);
 	write_u16(out, PAPER_STEP_ONE);
 	write_u32(out, UINT32_MAX);
 	write_zeros(out, 100);

@@ -182,6 +182,23 @@ static void every_step_has_the_levels_that_it_would_have_alone(void **unused)
 	free(block);
 }
 
+/* Of what a step makes larger than planes can say. */
+static void levels_end_with_the_planes_that_there_may_be(void **unused)
+{
+	const struct lattice_dims d = {4, 4, 4};
+	const int32_t most = (1 << SPECTRAL_PLANES_MAX) - 1;
+	float block[3 * 64] = {[0] = 2.0f * (float)most, [64] = -2.0f * (float)most}, *const field[3] = {block, block + 64,
+	                                                                                                 block + 128};
+	struct planes *planes = NULL;
+	(void)unused;
+	assert_int_equal(planes_create(d, 1, &planes, NULL), BP_OK);
+	assert_int_equal(planes_quantise(planes, field, 1, 0, NULL), BP_OK);
+	assert_int_equal(planes->levels_count, 3);
+	assert_int_equal(planes->levels[1].level[0], most);
+	assert_int_equal(planes->levels[2].level[0], -most);
+	planes_free(planes);
+}
+
 static void the_lowest_plane_is_that_of_the_last_unit_coded(void **unused)
 {
 	const uint32_t planes = 5, harmonics = 7;
@@ -300,6 +317,7 @@ int main(void)
 		cmocka_unit_test(levels_come_back_from_any_prefix_of_units),
 		cmocka_unit_test(a_level_of_one_that_stands_alone_is_dropped_and_one_in_company_stays),
 		cmocka_unit_test(every_step_has_the_levels_that_it_would_have_alone),
+		cmocka_unit_test(levels_end_with_the_planes_that_there_may_be),
 		cmocka_unit_test(the_lowest_plane_is_that_of_the_last_unit_coded),
 		cmocka_unit_test(arbitrary_bytes_decode_to_something_legal),
 		cmocka_unit_test(the_mixer_learns_what_a_bit_depends_on),

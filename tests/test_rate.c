@@ -5,7 +5,6 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
@@ -100,7 +99,7 @@ static void the_bytes_of_all_planes_are_foreseen_before_the_lowest(void **state)
 			const uint32_t plane = planes_unit_plane(planes, unit);
 			planes_encode_unit(planes, &coder, unit);
 			if (plane < RATE_PLANES)
-				taken[plane] = (double)range_encoder_bytes(&encoder, 0);
+				taken[plane] = (double)range_encoder_bytes(&encoder);
 		}
 		assert_true(fabs(rate_foresee(&rate, (double)step, ROUND, taken) / taken[0] - 1) < 0.08);
 		byte_buffer_free(&bytes);

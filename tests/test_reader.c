@@ -38,14 +38,12 @@ static void layers_and_sections_are_told(const bp_archive *archive, const bp_mat
 
 static void an_archive_tells_its_materials_without_loading_them(void **state)
 {
-	bp_archive *archive;
 	bp_material_info info = {.struct_bytes = sizeof info};
-	uint64_t before;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 5000);
-	archive = opened(fixture_path("a.bpk"));
+	bp_archive *archive = opened(fixture_path("a.bpk"));
 	assert_int_equal(bp_archive_count(archive), 4);
-	before = bp_archive_bytes_read(archive);
+	uint64_t before = bp_archive_bytes_read(archive);
 	assert_int_equal(before, 64 + 4096);
 	assert_int_equal(bp_archive_info(archive, 2, &info, NULL), BP_OK);
 	assert_int_equal(bp_archive_bytes_read(archive) - before, info.head_bytes);
@@ -68,7 +66,6 @@ static void an_archive_tells_its_materials_without_loading_them(void **state)
 
 static void a_record_is_read_whole_and_checked(void **state)
 {
-	bp_archive *archive;
 	struct index_page leaf = {0};
 	struct index_entry entry;
 	struct record_head head;
@@ -76,7 +73,7 @@ static void a_record_is_read_whole_and_checked(void **state)
 	size_t expected_bytes;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 50);
-	archive = opened(fixture_path("a.bpk"));
+	bp_archive *archive = opened(fixture_path("a.bpk"));
 	assert_int_equal(archive_entry(archive, 1, &leaf, &entry, NULL), BP_OK);
 	assert_int_equal(archive_entry_record(archive, &entry, &head, &record, NULL), BP_OK);
 	expected = fixture_record("chrome", 2, 50, &expected_bytes);
@@ -130,12 +127,11 @@ static bp_status open_with(size_t at, uint64_t value, unsigned width)
 	size_t bytes;
 	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes);
 	bp_archive *archive = NULL;
-	bp_status status;
 	for (unsigned i = 0; i < width; i++)
 		file[at + i] = (uint8_t)(value >> 8 * i);
 	store_u32(file + 60, bytes_crc32(file, 60));
 	fixture_file_write(fixture_path("b.bpk"), file, bytes);
-	status = bp_archive_open(fixture_path("b.bpk"), &archive, NULL);
+	bp_status status = bp_archive_open(fixture_path("b.bpk"), &archive, NULL);
 	bp_archive_close(archive);
 	free(file);
 	return status;
@@ -165,12 +161,11 @@ static void newer_versions_and_hostile_headers_are_told_apart(void **state)
 
 static void a_file_cut_while_open_gives_an_error(void **state)
 {
-	bp_archive *archive;
 	bp_material_info info = {.struct_bytes = sizeof info};
 	bp_error error;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 5000);
-	archive = opened(fixture_path("a.bpk"));
+	bp_archive *archive = opened(fixture_path("a.bpk"));
 	assert_int_equal(truncate(fixture_path("a.bpk"), 30000), 0);
 	assert_int_equal(bp_archive_info(archive, 0, &info, &error), BP_OK);
 	assert_int_equal(bp_archive_info(archive, 3, &info, &error), BP_ERROR_CORRUPT);
@@ -189,18 +184,16 @@ static int count_problem(void *user, const bp_problem *problem)
 static void verify_names_each_damaged_material(void **state)
 {
 	size_t bytes;
-	uint8_t *file;
-	bp_archive *archive;
 	bp_material_info info = {.struct_bytes = sizeof info};
 	unsigned counts[2] = {0, 0};
 	bp_error error;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 500);
-	archive = opened(fixture_path("a.bpk"));
+	bp_archive *archive = opened(fixture_path("a.bpk"));
 	assert_int_equal(bp_archive_verify(archive, 0, count_problem, counts, &error), BP_OK);
 	assert_true(bp_archive_bytes_read(archive) >= archive_header(archive)->file_bytes);
 	assert_int_equal(counts[0] + counts[1], 0);
-	file = fixture_file_read(fixture_path("a.bpk"), &bytes);
+	uint8_t *file = fixture_file_read(fixture_path("a.bpk"), &bytes);
 	bp_archive_info(archive, 1, &info, NULL);
 	file[info.record_offset + info.record_bytes - 1] ^= 1;
 	bp_archive_info(archive, 3, &info, NULL);
@@ -232,11 +225,10 @@ static void *read_everything(void *user)
 static void eight_threads_read_through_one_handle(void **state)
 {
 	pthread_t threads[8];
-	bp_archive *archive;
 	uint64_t before, each;
 	(void)state;
 	fixture_archive(fixture_path("a.bpk"), NAMES, 4, 500);
-	archive = opened(fixture_path("a.bpk"));
+	bp_archive *archive = opened(fixture_path("a.bpk"));
 	before = bp_archive_bytes_read(archive);
 	assert_null(read_everything(archive));
 	each = bp_archive_bytes_read(archive) - before;

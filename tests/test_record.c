@@ -82,11 +82,10 @@ static bp_status parse_with(size_t at, uint64_t value, unsigned width)
 	uint8_t *record = fixture_record("m", 2, 4, &bytes);
 	uint32_t head_bytes = load_u32(record + 8);
 	struct record_head head;
-	bp_status status;
 	for (unsigned i = 0; i < width; i++)
 		record[at + i] = (uint8_t)(value >> 8 * i);
 	store_u32(record + head_bytes - 4, bytes_crc32(record, head_bytes - 4));
-	status = record_head_read(record, bytes, &head, NULL);
+	bp_status status = record_head_read(record, bytes, &head, NULL);
 	free(record);
 	return status;
 }

@@ -72,7 +72,6 @@ static void holes_cost_only_the_materials_they_hit(void **state)
 		unsigned lost_told = 0, lost = 0;
 		struct recovery recovery;
 		bp_error error;
-		bp_status status;
 		file = fixture_file_read(fixture_path("whole.bpk"), &bytes);
 		for (int h = 0; h < holes[turn / 4]; h++) {
 			size_t at = random_below(bytes - HOLE);
@@ -86,7 +85,8 @@ static void holes_cost_only_the_materials_they_hit(void **state)
 			lost += damaged[i];
 		fixture_file_write(fixture_path("holes.bpk"), file, bytes);
 		free(file);
-		status = archive_recover(fixture_path("holes.bpk"), fixture_path("saved.bpk"), count_loss, &lost_told, &recovery, &error);
+		bp_status status =
+			archive_recover(fixture_path("holes.bpk"), fixture_path("saved.bpk"), count_loss, &lost_told, &recovery, &error);
 		if (lost == COUNT) {
 			assert_int_equal(status, BP_ERROR_NOT_FOUND);
 			continue;
@@ -104,10 +104,9 @@ static void a_lost_header_and_index_do_not_matter(void **state)
 	const bool damaged[COUNT] = {false};
 	struct recovery recovery;
 	size_t bytes;
-	uint8_t *file;
 	(void)state;
 	archive_make(fixture_path("whole.bpk"));
-	file = fixture_file_read(fixture_path("whole.bpk"), &bytes);
+	uint8_t *file = fixture_file_read(fixture_path("whole.bpk"), &bytes);
 	memset(file, 0, ARCHIVE_HEADER_BYTES);
 	fixture_file_write(fixture_path("headless.bpk"), file, bytes - PAGE_BYTES + 100);
 	free(file);

@@ -3,7 +3,6 @@
  */
 #include <archive.h>
 #include <archive_entry.h>
-#include <errno.h>
 #include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "merl/container_fault.h"
 #include "merl/source.h"
 #include "merl/source_kind.h"
 #include "scratch.h"
@@ -581,6 +581,64 @@ static void a_container_cut_off_anywhere_ends_with_an_error_or_fewer_members(voi
 	free(bytes);
 }
 
+/* Links of a compression that nobody knows: each is an error of its own, which must not go on for ever. */
+static void after_a_thousand_members_that_cannot_be_read_the_rest_is_not_tried(void **state)
+{
+	(void)state;
+	enum { LINKS = 1100, ROOM = 1 << 18 };
+	uint8_t *bytes = malloc(ROOM);
+	struct container *container;
+	struct container_member member;
+	bool more;
+	int failures = 0;
+	struct pack pack = pack_open("links.zip", ARCHIVE_FORMAT_ZIP, ARCHIVE_FILTER_NONE, NULL);
+	pack_text(&pack, "nickel.binary", "table of nickel");
+	for (int n = 0; n < LINKS; n++) {
+		struct archive_entry *entry = archive_entry_new();
+		archive_entry_set_pathname(entry, "link.binary");
+		archive_entry_set_mode(entry, AE_IFLNK | 0644);
+		archive_entry_set_symlink(entry, "x");
+		assert_int_equal(archive_write_header(pack.archive, entry), ARCHIVE_OK);
+		archive_entry_free(entry);
+	}
+	pack_close(&pack);
+	FILE *file = fopen(in("links.zip"), "rb");
+	const size_t count = fread(bytes, 1, ROOM, file);
+	fclose(file);
+	for (size_t at = 100; at + 12 < count; at++) /* behind nickel's head */
+		if (!memcmp(bytes + at, "PK\3\4", 4) || !memcmp(bytes + at, "PK\1\2", 4))
+			bytes[at + (bytes[at + 2] == 3 ? 8 : 10)] = 99;
+	put("links.zip", bytes, count);
+	assert_int_equal(container_open(in("links.zip"), CONTAINER_INDEXED, NULL, &container, NULL), BP_OK);
+	for (more = true;;) {
+		const bp_status status = container_next(container, &member, &more, NULL);
+		if (status == BP_OK && !more)
+			break;
+		failures += status != BP_OK;
+	}
+	assert_int_equal(failures, 1001);
+	container_close(container);
+	free(bytes);
+}
+
+/* Where a zip's numbers are too large for its last record, that one has 0xFFFF, and another record before it the number. */
+static void a_zip_of_large_numbers_is_no_split_one(void **state)
+{
+	(void)state;
+	uint8_t end[22] = "PK\5\6";
+	for (uint8_t disk = 0; disk <= 1; disk++) {
+		end[4] = end[5] = disk ? 1 : 0xFF;
+		put("end.zip", end, sizeof end);
+		const int fd = open(in("end.zip"), O_RDONLY);
+		const char *fault = container_fault(fd);
+		close(fd);
+		if (disk)
+			expect_words(fault, "the last part of a split zip");
+		else
+			assert_null(fault);
+	}
+}
+
 static void an_encrypted_member_is_refused_with_a_remedy(void **state)
 {
 	(void)state;
@@ -692,6 +750,8 @@ int main(void)
 		cmocka_unit_test(names_in_utf8_survive_in_the_c_locale),
 		cmocka_unit_test(a_damaged_container_is_told_with_its_member_and_the_others_are_read),
 		cmocka_unit_test(a_container_cut_off_anywhere_ends_with_an_error_or_fewer_members),
+		cmocka_unit_test(after_a_thousand_members_that_cannot_be_read_the_rest_is_not_tried),
+		cmocka_unit_test(a_zip_of_large_numbers_is_no_split_one),
 		cmocka_unit_test(a_stream_is_named_whichever_way_it_was_met_first),
 		cmocka_unit_test(folders_end_a_thousand_deep),
 		cmocka_unit_test(an_encrypted_member_is_refused_with_a_remedy),

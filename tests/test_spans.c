@@ -118,39 +118,6 @@ static void span_forward_is_the_sum_written_out(void **unused)
 	}
 }
 
-/* Whole, or every second cell along all axes. */
-static float *inverse_of(struct lattice_dims d, const float *spectrum, bool half)
-{
-	const uint32_t every = half ? 2 : 1, rows = d.theta_h / every * (d.theta_d / every), width = d.phi_d / every;
-	float *table = malloc((size_t)rows * width * sizeof *table), *piece = malloc(SPECTRUM_BLOCK * 1024 * sizeof *piece);
-	struct spectrum_inverse *inverse = NULL;
-	struct spectrum_rows *t = NULL;
-	uint32_t start[64];
-	assert_int_equal(spectrum_inverse_create(d, &inverse, NULL), BP_OK);
-	assert_int_equal(spectrum_rows_create(inverse, SPAN_MARGIN, d.phi_d, half, &t, NULL), BP_OK);
-	struct spectrum_term *terms = terms_of(inverse, spectrum, start);
-	assert_int_equal(spectrum_rows_field(t, 0, terms, start, NULL), BP_OK);
-	for (uint32_t r = 0; r < rows; r += SPECTRUM_BLOCK) {
-		const uint32_t count = rows - r < SPECTRUM_BLOCK ? rows - r : SPECTRUM_BLOCK;
-		spectrum_rows_cells(t, 0, r, count, piece, 1024);
-		for (uint32_t n = 0; n < count; n++) {
-			uint32_t first, seen;
-			spectrum_rows_seen(t, r + n, &first, &seen);
-			assert_true(seen && first + seen <= width);
-			for (uint32_t k = 0; k < width; k++) {
-				const uint32_t inside = k < first ? first : k < first + seen ? k : first + seen - 1;
-				assert_true(piece[n * 1024 + k] == piece[n * 1024 + inside]);
-			}
-			memcpy(table + (size_t)(r + n) * width, piece + n * 1024, width * sizeof *table);
-		}
-	}
-	free(terms);
-	free(piece);
-	spectrum_rows_free(t);
-	spectrum_inverse_free(inverse);
-	return table;
-}
-
 static void what_can_be_seen_comes_back_and_what_lies_beyond_is_the_value_beside_it(void **unused)
 {
 	(void)unused;
@@ -164,7 +131,7 @@ static void what_can_be_seen_comes_back_and_what_lies_beyond_is_the_value_beside
 		assert_int_equal(spectrum_create(d, SPAN_MARGIN, &forward, NULL), BP_OK);
 		const uint16_t *span = spectrum_spans(forward);
 		spectrum_forward(forward, spectrum, 0);
-		float *back = inverse_of(d, spectrum, false);
+		float *back = table_of(d, SPAN_MARGIN, spectrum, false);
 		for (size_t i = 0; i < cells; i++) {
 			const uint32_t s = span[i / d.phi_d], first = (d.phi_d - s) / 2, last = first + s - 1, k = (uint32_t)(i % d.phi_d);
 			const size_t source = i - k + (k < first ? first : k > last ? last : k);
@@ -187,7 +154,7 @@ static void half_a_table_is_every_second_cell_of_the_whole(void **unused)
 		float *spectrum = malloc(lattice_cells(d) * sizeof *spectrum);
 		for (size_t i = 0; i < lattice_cells(d); i++)
 			spectrum[i] = uniform() > 0.2 ? 0 : (float)(uniform() - 0.5);
-		float *whole = inverse_of(d, spectrum, false), *half = inverse_of(d, spectrum, true);
+		float *whole = table_of(d, SPAN_MARGIN, spectrum, false), *half = table_of(d, SPAN_MARGIN, spectrum, true);
 		for (uint32_t i = 0; i < h.theta_h; i++)
 			for (uint32_t j = 0; j < h.theta_d; j++)
 				for (uint32_t k = 0; k < h.phi_d; k++)

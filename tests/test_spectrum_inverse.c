@@ -10,29 +10,7 @@
 #include <cmocka.h>
 
 #include "model/spectral/spectral_kernels.h"
-#include "model/spectral/spectrum_inverse.h"
 #include "random_tables.h"
-
-/* The table of a spectrum, block by block. */
-static float *inverse_of(struct lattice_dims d, const float *spectrum)
-{
-	const size_t rows = (size_t)d.theta_h * d.theta_d;
-	float *table = malloc(lattice_cells(d) * sizeof *table), *plane = aligned_alloc(64, rows * SPECTRUM_BLOCK * sizeof *plane);
-	struct spectrum_inverse *inverse = NULL;
-	uint32_t start[64];
-	assert_int_equal(spectrum_inverse_create(d, &inverse, NULL), BP_OK);
-	struct spectrum_term *terms = terms_of(inverse, spectrum, start);
-	for (uint32_t k = 0; k < d.phi_d; k += SPECTRUM_BLOCK) {
-		spectrum_inverse_block(inverse, terms, start, k, plane);
-		for (size_t r = 0; r < rows; r++)
-			for (uint32_t q = k; q < k + SPECTRUM_BLOCK && q < d.phi_d; q++)
-				table[r * d.phi_d + q] = plane[r * SPECTRUM_BLOCK + q - k];
-	}
-	free(terms);
-	free(plane);
-	spectrum_inverse_free(inverse);
-	return table;
-}
 
 /* FORMAT.md, "Inverse wavelets", one step of one line. */
 static void synthesis(long double *x, uint32_t n)
@@ -92,7 +70,7 @@ static void a_table_is_what_the_format_says_of_its_coefficients(void **unused)
 			float *spectrum = malloc(cells * sizeof *spectrum);
 			for (size_t i = 0; i < cells; i++)
 				spectrum[i] = sparse && uniform() > 0.03 ? 0 : (float)(uniform() - 0.5);
-			float *quick = inverse_of(DIMS[n], spectrum);
+			float *quick = table_of(DIMS[n], 0, spectrum, false);
 			long double *slow = slow_inverse(DIMS[n], spectrum);
 			for (size_t i = 0; i < cells; i++)
 				assert_true(fabsl((long double)quick[i] - slow[i]) < 3e-6L);
@@ -113,7 +91,7 @@ static void the_inverse_gives_the_table_back(void **unused)
 			spectrum[i] = table[i] = (float)(uniform() - 0.5);
 		assert_int_equal(spectrum_create(DIMS[n], 0, &forward, NULL), BP_OK);
 		spectrum_forward(forward, spectrum, 0);
-		float *back = inverse_of(DIMS[n], spectrum);
+		float *back = table_of(DIMS[n], 0, spectrum, false);
 		for (size_t i = 0; i < cells; i++)
 			assert_true(fabsf(back[i] - table[i]) < 3e-6f);
 		spectrum_free(forward);
@@ -126,32 +104,12 @@ static void the_inverse_gives_the_table_back(void **unused)
 static void nothing_gives_a_table_of_zeros(void **unused)
 {
 	const struct lattice_dims d = {16, 17, 18};
-	float *spectrum = calloc(lattice_cells(d), sizeof *spectrum), *table = inverse_of(d, spectrum);
+	float *spectrum = calloc(lattice_cells(d), sizeof *spectrum), *table = table_of(d, 0, spectrum, false);
 	(void)unused;
 	for (size_t i = 0; i < lattice_cells(d); i++)
 		assert_true(table[i] == 0);
 	free(spectrum);
 	free(table);
-}
-
-static void any_cells_may_be_asked_of_a_harmonic(void **unused)
-{
-	(void)unused;
-	for (int n = 0; n < DIMS_COUNT; n++) {
-		const uint32_t p = DIMS[n].phi_d;
-		struct spectrum_inverse *inverse = NULL;
-		assert_int_equal(spectrum_inverse_create(DIMS[n], &inverse, NULL), BP_OK);
-		for (uint32_t m = 0; m < p; m++)
-			for (uint32_t first = 0; first < p; first += 3)
-				for (uint32_t every = 1; every < 3; every++) {
-					float got[20];
-					spectrum_inverse_cosines(inverse, m, first, every, 20, got);
-					for (uint32_t i = 0; i < 20; i++)
-						assert_true(fabs((double)got[i] -
-						                 sqrt((m ? 2.0 : 1.0) / p) * cos(M_PI * m * (first + every * i + 0.5) / p)) < 1e-7);
-				}
-		spectrum_inverse_free(inverse);
-	}
 }
 
 static void half_a_plane_is_every_second_cell_of_the_whole(void **unused)
@@ -178,22 +136,13 @@ static void half_a_plane_is_every_second_cell_of_the_whole(void **unused)
 
 static void plain_and_avx2_loops_give_the_same_bits(void **unused)
 {
-	enum { ROWS = 33, COLUMNS = 18, CELLS = ROWS * COLUMNS * SPECTRUM_BLOCK, TERMS = 500 };
+	enum { ROWS = 33, COLUMNS = 18, CELLS = ROWS * COLUMNS * SPECTRUM_BLOCK };
 	static _Alignas(64) float x[CELLS], y[CELLS];
-	struct spectrum_term terms[TERMS];
-	float cosine[SPECTRUM_BLOCK];
 	(void)unused;
 	if (!kernels_avx2_usable())
 		skip();
 	for (int i = 0; i < CELLS; i++)
 		x[i] = y[i] = (float)(uniform() - 0.5);
-	for (int i = 0; i < TERMS; i++)
-		terms[i] = (struct spectrum_term){(uint32_t)(uniform() * ROWS * COLUMNS), (float)(uniform() - 0.5)};
-	for (int i = 0; i < SPECTRUM_BLOCK; i++)
-		cosine[i] = (float)(uniform() - 0.5);
-	spectral_kernels_plain.spectrum_spread(terms, TERMS, cosine, x);
-	spectral_kernels_avx2.spectrum_spread(terms, TERMS, cosine, y);
-	assert_memory_equal(x, y, sizeof x);
 	for (int half = 0; half < 2; half++) {
 		spectral_kernels_plain.cdf97_plane(x, ROWS, COLUMNS, 2, half);
 		spectral_kernels_avx2.cdf97_plane(y, ROWS, COLUMNS, 2, half);
@@ -207,7 +156,6 @@ int main(void)
 		cmocka_unit_test(a_table_is_what_the_format_says_of_its_coefficients),
 		cmocka_unit_test(the_inverse_gives_the_table_back),
 		cmocka_unit_test(nothing_gives_a_table_of_zeros),
-		cmocka_unit_test(any_cells_may_be_asked_of_a_harmonic),
 		cmocka_unit_test(half_a_plane_is_every_second_cell_of_the_whole),
 		cmocka_unit_test(plain_and_avx2_loops_give_the_same_bits),
 	};

@@ -112,15 +112,13 @@ static void the_sphere_agrees_with_the_textbook_under_every_lighting(void **stat
 	struct lattice lattice;
 	struct lookup_table table;
 	struct sphere_image image;
-	const struct lookup_table *tables[1] = {&table};
-	struct sphere_image *images[1] = {&image};
 	struct light lights[LIGHTS_MAX];
 	lattice_make(SMALL, &lattice);
 	assert_int_equal(lookup_table_measured(&lattice, &table, &error), BP_OK);
 	assert_int_equal(sphere_image_alloc(SIZE, &image, &error), BP_OK);
 	for (int lighting = 0; lighting < LIGHTING_COUNT; lighting++) {
 		int count = lights_make((enum lighting)lighting, lights);
-		assert_int_equal(sphere_render((enum lighting)lighting, tables, 1, images, &error), BP_OK);
+		assert_int_equal(sphere_render((enum lighting)lighting, &table, &image, &error), BP_OK);
 		for (int n = 0; n < SIZE * SIZE; n++) {
 			double u = (n % SIZE + 0.5) / SIZE * 2 - 1, v = 1 - (n / SIZE + 0.5) / SIZE * 2, sum[3] = {0, 0, 0};
 			assert_int_equal(image.covered[n], u * u + v * v < 0.99);
@@ -255,18 +253,16 @@ static void values_of_any_magnitude_render_finite(void **state)
 	static const double FACTORS[] = {1e300, 1, 1e-300};
 	bp_error error;
 	struct sphere_image image;
-	struct sphere_image *images[1] = {&image};
 	assert_int_equal(sphere_image_alloc(3, &image, &error), BP_OK);
 	for (int f = 0; f < 3; f++) {
 		struct lattice lattice;
 		struct lookup_table table;
-		const struct lookup_table *tables[1] = {&table};
 		lattice_make(SMALL, &lattice);
 		for (int c = 0; c < 3; c++)
 			for (size_t n = 0; n < lattice_cells(SMALL); n++)
 				lattice.rgb[c][n] *= FACTORS[f];
 		assert_int_equal(lookup_table_measured(&lattice, &table, &error), BP_OK);
-		assert_int_equal(sphere_render(LIGHTING_KEY, tables, 1, images, &error), BP_OK);
+		assert_int_equal(sphere_render(LIGHTING_KEY, &table, &image, &error), BP_OK);
 		double middle = (double)image.rgb[3 * 4];
 		assert_true(middle > 1e-3 && middle < 1e3 && image.unit == table.unit);
 		lookup_table_free(&table);

@@ -5,7 +5,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -16,15 +15,10 @@
 #include "model/math/kernels.h"
 #include "model/table/table_parts.h"
 #include "trilinear.h"
+#define RANDOM_SEED 11
+#include "random.h"
 
-static uint64_t state = 11;
 enum { COUNT = 200 };
-
-static double uniform(void)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (double)(state >> 11) * 0x1p-53;
-}
 
 static void hemisphere(float out[3])
 {
@@ -171,6 +165,22 @@ static void the_centre_of_a_cell_has_its_value_and_before_the_first_and_beyond_t
 	expansion_free(&e);
 }
 
+/* The least and the largest code of the shares of R (0) or B (2) that a compact table of 30 x 30 x 30 cells has. */
+static void codes_range(const struct table *table, int channel, uint32_t *least, uint32_t *most)
+{
+	struct table_layout layout;
+	assert_true(table_layout(table, &layout));
+	*least = 4095;
+	*most = 0;
+	for (size_t block = 0; block < 30 * 30 * 2; block++)
+		for (int n = 0; n < 3; n++) {
+			const uint8_t *at = layout.blocks + 32 * block + 23 + 3 * n;
+			const uint32_t code = channel ? (uint32_t)(at[1] >> 4 | at[2] << 4) : (uint32_t)(at[0] | at[1] << 8) & 4095;
+			*least = code < *least ? code : *least;
+			*most = code > *most ? code : *most;
+		}
+}
+
 /* A hostile record's, found by fuzzing: the range of a channel's shares had no finite reciprocal. */
 static void a_channel_that_is_next_to_nothing_leaves_the_others_alone(void **user)
 {
@@ -186,6 +196,11 @@ static void a_channel_that_is_next_to_nothing_leaves_the_others_alone(void **use
 			hemisphere(wo);
 			table_evaluate(table, wi, wo, rgb);
 			assert_true(rgb[c] >= 0 && rgb[c] < 1e-3f && rgb[1] > 0 && isfinite(rgb[1]));
+		}
+		for (int channel = 0; channel < 3; channel += 2) {
+			uint32_t least, most;
+			codes_range(table, channel, &least, &most);
+			assert_true(least == 0 && most == 4095);
 		}
 		table_free(table);
 	}

@@ -238,9 +238,8 @@ static void decoded_values_are_the_committed_ones(void **state)
 static void write_all(const char *folder)
 {
 	char path[512], values[512];
-	FILE *readme;
 	snprintf(path, sizeof path, "%s/README.md", folder);
-	readme = fopen(path, "w");
+	FILE *readme = fopen(path, "w");
 	assert_non_null(readme);
 	fputs("# Test vectors\n\n"
 	      "Small archives for readers of the format: good ones load and verify, unsupported ones are intact but need a newer\n"

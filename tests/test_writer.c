@@ -1,6 +1,5 @@
 #include "archive_fixture.h"
 
-#include <errno.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -114,10 +113,9 @@ static void a_full_disk_leaves_the_old_archive_untouched(void **state)
 		size_t bytes;
 		uint8_t *record = fixture_record("a", 1, 1000000, &bytes);
 		bp_error error = {0};
-		bp_status status;
 		signal(SIGXFSZ, SIG_IGN);
 		setrlimit(RLIMIT_FSIZE, &limit);
-		status = archive_writer_open(path, &writer, &error);
+		bp_status status = archive_writer_open(path, &writer, &error);
 		if (!status)
 			status = archive_writer_add(writer, record, bytes, &error);
 		archive_writer_discard(writer);

@@ -195,10 +195,9 @@ FIXTURE void make_gap(const char *path)
 FIXTURE void root_change(const char *path, bool cycle)
 {
 	struct bytes file;
-	uint8_t *root;
 	vector_two_levels(path);
 	file.at = fixture_file_read(path, &file.count);
-	root = file.at + file.count - PAGE_BYTES;
+	uint8_t *root = file.at + file.count - PAGE_BYTES;
 	put(root + (cycle ? 16 : 16 + 268), cycle ? 2 : 0, 4);
 	mend(root, PAGE_BYTES - 4);
 	bytes_keep(path, file);

@@ -48,8 +48,6 @@ bp_status archive_header_read(const uint8_t *bytes, size_t count, uint64_t file_
 {
 	struct byte_reader in = byte_reader_over(bytes, count);
 	struct archive_header header;
-	const uint8_t *reserved;
-	bp_status status;
 
 	if (count < ARCHIVE_MAGIC_BYTES || memcmp(bytes, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES) != 0)
 		return error_set(error, BP_ERROR_NOT_OURS, 0, "not an archive: it does not begin as one");
@@ -67,7 +65,7 @@ bp_status archive_header_read(const uint8_t *bytes, size_t count, uint64_t file_
 	header.index_offset = read_u64(&in);
 	header.page_count = read_u32(&in);
 	header.depth = read_u32(&in);
-	reserved = read_span(&in, AT_CRC - AT_RESERVED);
+	const uint8_t *reserved = read_span(&in, AT_CRC - AT_RESERVED);
 	if (header.major != ARCHIVE_MAJOR)
 		return error_set(error, BP_ERROR_UNSUPPORTED, AT_MAJOR, "archive format %u.%u; this program reads %d.x", header.major,
 		                 header.minor, ARCHIVE_MAJOR);
@@ -78,7 +76,7 @@ bp_status archive_header_read(const uint8_t *bytes, size_t count, uint64_t file_
 	for (int i = 0; header.minor <= ARCHIVE_MINOR && i < AT_CRC - AT_RESERVED; i++)
 		if (reserved[i])
 			return error_set(error, BP_ERROR_CORRUPT, (uint64_t)(AT_RESERVED + i), "reserved bytes of the header are not zero");
-	status = header_check(&header, file_bytes, error);
+	bp_status status = header_check(&header, file_bytes, error);
 	if (status)
 		return status;
 	*out = header;

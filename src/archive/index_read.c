@@ -73,11 +73,10 @@ uint32_t index_search_ordinal(const struct index_page *page, uint64_t ordinal)
 static bp_status entry_check(const struct index_page *page, uint32_t i, size_t at, size_t *next, bp_error *error)
 {
 	size_t fixed = index_fixed_bytes(page->level), name_bytes;
-	const char *fault;
 	if (at + fixed > PAGE_BYTES - 4 || at + fixed + page->bytes[at + fixed - 1] > PAGE_BYTES - 4)
 		return error_set(error, BP_ERROR_CORRUPT, at, "index entry %u does not fit its page", i);
 	name_bytes = page->bytes[at + fixed - 1];
-	fault = name_fault((const char *)page->bytes + at + fixed, name_bytes);
+	const char *fault = name_fault((const char *)page->bytes + at + fixed, name_bytes);
 	if (fault)
 		return error_set(error, BP_ERROR_CORRUPT, at, "index entry %u has an illegal name: %s", i, fault);
 	if (i) {
@@ -106,7 +105,6 @@ bp_status index_page_read(struct index_page *page, const struct page_expect *exp
 {
 	size_t at = PAGE_HEAD_BYTES;
 	uint32_t name_bytes;
-	const char *name;
 	if (memcmp(page->bytes, PAGE_MAGIC, 4) != 0)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "an index page should begin here");
 	if (bytes_crc32(page->bytes, PAGE_BYTES - 4) != load_u32(page->bytes + PAGE_BYTES - 4))
@@ -122,16 +120,15 @@ bp_status index_page_read(struct index_page *page, const struct page_expect *exp
 		                 page->number, page->level, (unsigned long long)page->first_ordinal, page->count, expect->level,
 		                 (unsigned long long)expect->first_ordinal);
 	for (uint32_t i = 0; i < page->count; i++) {
-		bp_status status;
 		page->entry_at[i] = (uint16_t)at;
-		status = entry_check(page, i, at, &at, error);
+		bp_status status = entry_check(page, i, at, &at, error);
 		if (status)
 			return status;
 	}
 	for (size_t i = at; i < PAGE_BYTES - 4; i++)
 		if (page->bytes[i])
 			return error_set(error, BP_ERROR_CORRUPT, i, "index page %u: bytes behind the last entry are not zero", page->number);
-	name = index_entry_name(page, 0, &name_bytes);
+	const char *name = index_entry_name(page, 0, &name_bytes);
 	if (expect->first_name && name_compare(name, name_bytes, expect->first_name, expect->first_name_bytes) != 0)
 		return error_set(error, BP_ERROR_CORRUPT, PAGE_HEAD_BYTES, "index page %u does not begin with the name its parent says",
 		                 page->number);

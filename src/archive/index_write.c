@@ -36,7 +36,6 @@ static bp_status level_write(const struct byte_buffer *entries, uint32_t level, 
 		size_t end = at, count = 0;
 		uint64_t first = level ? load_u64(entries->bytes + at + 4) : ordinal;
 		const uint8_t *name = entries->bytes + at + fixed;
-		bp_status status;
 		while (end < entries->count && count < PAGE_ENTRIES_MAX) {
 			size_t bytes = fixed + entries->bytes[end + fixed - 1];
 			if (PAGE_HEAD_BYTES + (end - at) + bytes > PAGE_BYTES - 4)
@@ -50,7 +49,7 @@ static bp_status level_write(const struct byte_buffer *entries, uint32_t level, 
 		write_u64(&out, first);
 		write_bytes(&out, entries->bytes + at, end - at);
 		store_u32(page + PAGE_BYTES - 4, bytes_crc32(page, PAGE_BYTES - 4));
-		status = write(user, page, error);
+		bp_status status = write(user, page, error);
 		if (status)
 			return status;
 		write_u32(above, *page_number);

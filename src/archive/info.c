@@ -43,10 +43,9 @@ bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material
 	struct index_entry entry;
 	struct record_head head;
 	bp_material_info full;
-	bp_status status;
 	if (!info || info->struct_bytes != sizeof full)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_material_info)");
-	status = archive_record_head(archive, index, &entry, &head, error);
+	bp_status status = archive_record_head(archive, index, &entry, &head, error);
 	if (status)
 		return status;
 	info_fill(&head, entry.offset, &full);

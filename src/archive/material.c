@@ -107,9 +107,9 @@ static bp_status material_fill(const bp_archive *archive, const struct index_ent
 }
 
 /*
- * What loading may need: 17 bytes per cell while the model is expanded, 12 of them in the three fields, 6 of the result, and a few
- * tables. Fields lie in blocks of lanes (spectrum_rows.c), which are more than the cells where phi_d has few; and the cosines of a row's
- * span of n cells take 2 n^2 bytes (spans.c), those of all spans P^3/3, which counts where it has hundreds.
+ * What loading may need: 17 bytes per cell while the model is expanded, 12 of them in the three fields, 6 of the result, and a
+ * few tables. Fields lie in blocks of lanes (spectrum_rows.c), which are more than the cells where phi_d has few; and the cosines
+ * of a row's span of n cells take 2 n^2 bytes (spans.c), those of all spans P^3/3, which counts where it has hundreds.
  */
 static double need_of(struct lattice_dims dims)
 {
@@ -137,10 +137,9 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 	struct record_head head;
 	bp_material *material = NULL;
 	fenv_t before;
-	bp_status status;
 
 	options = options ? options : &whole;
-	status = options_check(options, error);
+	bp_status status = options_check(options, error);
 	if (status)
 		return status;
 	status = archive_record_head(archive, index, &entry, &head, error);

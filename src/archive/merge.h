@@ -14,11 +14,10 @@
 
 struct copy_options {
 	const char *output;
-	double
-		max_log_rmse; /* > 0: keep the fewest layers whose log RMSE of what can be seen is at most this, all where none is; 0: keep all */
-	bool replace; /* merge: of a name that several inputs have, take the last input's; otherwise that is refused */
-	/* merge: above 0, the inputs are the shards of one build into this many: refuse one that is not, or is there twice, and records of
-	   other options, profile or codec version than the first one's. An input without a material may be any shard */
+	double max_log_rmse; /* > 0: the fewest layers whose log RMSE of what is seen is at most this, all where none is; 0: all */
+	bool replace;        /* merge: of a name that several inputs have, take the last input's; otherwise that is refused */
+	/* merge: above 0, the inputs are the shards of one build into this many: refuse one that is not, or is there twice, and
+	   records of other options, profile or codec version than the first one's. An input without a material may be any shard */
 	uint32_t shards;
 	bool (*stop)(void); /* asked before every record; true: nothing is written, *stopped is set. NULL: never */
 };

@@ -106,7 +106,7 @@ static bp_status lattice_make(const bp_measured *measured, struct lattice *latti
 	return BP_OK;
 }
 
-/* What an extracted file's values carry below the horizon: found as they lie in the file only. *carried is the caller's to free. */
+/* What an extracted file's values carry below the horizon, found as they lie in the file only. The caller frees *carried. */
 static bp_status carried_take(const bp_measured *measured, size_t cells, struct carried *carried, bp_error *error)
 {
 	struct carried_reader reader = {.values = CHANNELS * cells};

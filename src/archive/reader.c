@@ -46,12 +46,11 @@ bp_status archive_page_read(const struct bp_archive *archive, const struct page_
                             bp_error *error)
 {
 	uint64_t offset = archive->header.index_offset + (uint64_t)expect->number * PAGE_BYTES;
-	bp_status status;
 	page->count = 0;
 	if (expect->number >= archive->header.page_count)
 		return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the index points to page %u of %u", expect->number,
 		                 archive->header.page_count);
-	status = archive_read(archive, offset, page->bytes, PAGE_BYTES, error);
+	bp_status status = archive_read(archive, offset, page->bytes, PAGE_BYTES, error);
 	if (!status)
 		status = error_shift(index_page_read(page, expect, error), offset, error);
 	if (status)
@@ -107,11 +106,10 @@ bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
 {
 	struct bp_archive *archive = NULL;
 	uint64_t file_bytes = 0;
-	bp_status status;
 
 	if (!path || !out)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a path and a place for the handle are needed");
-	status = archive_new(path, &archive, error);
+	bp_status status = archive_new(path, &archive, error);
 	if (status)
 		return status;
 	status = system_file_open(path, &archive->file, &file_bytes, error);
@@ -125,12 +123,11 @@ bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
 bp_status bp_archive_open_source(const bp_source *source, bp_archive **out, bp_error *error)
 {
 	struct bp_archive *archive = NULL;
-	bp_status status;
 
 	if (!source || !out || source->struct_bytes != sizeof *source || !source->read)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
 		                 "a bp_source with struct_bytes and read, and a place for the handle are needed");
-	status = archive_new("", &archive, error);
+	bp_status status = archive_new("", &archive, error);
 	if (status)
 		return status;
 	archive->source = *source;
@@ -179,14 +176,13 @@ static bp_status leaf_find(const struct bp_archive *archive, const char *name, u
 		uint32_t i = name ? index_search_name(page, name, strlen(name)) : index_search_ordinal(page, ordinal);
 		struct page_expect child;
 		char first_name[BP_NAME_BYTES_MAX + 1];
-		bp_status status;
 		if (i == UINT32_MAX)
 			i = 0; /* the name comes before all others: the first leaf will not have it */
 		child = index_child(page, i);
 		/* The page is about to be overwritten by its child. */
 		memcpy(first_name, child.first_name, child.first_name_bytes);
 		child.first_name = first_name;
-		status = archive_page_read(archive, &child, child.level ? &inner : leaf, error);
+		bp_status status = archive_page_read(archive, &child, child.level ? &inner : leaf, error);
 		if (status)
 			return status;
 		page = child.level ? &inner : leaf;
@@ -218,9 +214,8 @@ bp_status bp_archive_name(const bp_archive *archive, uint64_t index, char name[B
 {
 	struct index_page leaf;
 	struct index_entry entry;
-	bp_status status;
 	leaf.count = 0;
-	status = archive_entry(archive, index, &leaf, &entry, error);
+	bp_status status = archive_entry(archive, index, &leaf, &entry, error);
 	if (!status)
 		memcpy(name, entry.name, entry.name_bytes + 1);
 	return status;
@@ -230,17 +225,15 @@ bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t 
 {
 	struct index_page leaf;
 	uint32_t i, bytes;
-	const char *here;
-	bp_status status;
 	if (!name || !index)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a name and a place for its number are needed");
 	if (archive->header.count == 0)
 		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material \"%s\"", name);
-	status = leaf_find(archive, name, 0, &leaf, error);
+	bp_status status = leaf_find(archive, name, 0, &leaf, error);
 	if (status)
 		return status;
 	i = index_search_name(&leaf, name, strlen(name));
-	here = i == UINT32_MAX ? "" : index_entry_name(&leaf, i, &bytes);
+	const char *here = i == UINT32_MAX ? "" : index_entry_name(&leaf, i, &bytes);
 	if (i == UINT32_MAX || name_compare(here, bytes, name, strlen(name)) != 0)
 		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material \"%s\"", name);
 	if (leaf.first_ordinal >= archive->header.count || i >= archive->header.count - leaf.first_ordinal)

@@ -31,13 +31,13 @@ bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct
 bp_status archive_entry_head(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
                              bp_error *error);
 
-/* Reads an entry's whole record: *record is malloc'ed, head and section checksums are checked. For merge, subset, --update and extract. */
+/* An entry's whole record: *record is malloc'ed, checksums of head and sections are checked. For who copies records. */
 bp_status archive_entry_record(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
                                uint8_t **record, bp_error *error);
 
 /*
- * What kind of file the material was read from, from the section that says so (codec/record_origin.h); ORIGIN_MERL where there is none
- * that this program understands.
+ * What kind of file the material was read from, from the section that says so (codec/record_origin.h); ORIGIN_MERL where there is
+ * none that this program understands.
  */
 bp_status archive_entry_origin(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                                struct origin *out, bp_error *error);

@@ -62,14 +62,13 @@ static size_t scan_read(const struct scan *scan, uint64_t offset, uint8_t *bytes
 
 static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, uint32_t bytes, bool intact, bp_error *error)
 {
-	struct seen *entry;
 	struct seen *grown = memory_grown(scan->seen, scan->count, sizeof *grown);
 	if (!grown)
 		return error_memory(error, scan->count * sizeof *grown);
 	scan->seen = grown;
 	if (scan->names.count > UINT32_MAX - BP_NAME_BYTES_MAX - 1)
 		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "%s: too many names to remember", scan->path);
-	entry = &scan->seen[scan->count++];
+	struct seen *entry = &scan->seen[scan->count++];
 	*entry = (struct seen){.offset = offset, .bytes = bytes, .intact = intact, .name = (uint32_t)scan->names.count};
 	write_bytes(&scan->names, name, strlen(name) + 1);
 	return scan->names.failed ? error_memory(error, scan->names.count) : BP_OK;
@@ -81,12 +80,11 @@ static bp_status record_try(struct scan *scan, uint64_t offset, uint64_t *next, 
 	struct record_head head, whole;
 	uint32_t head_bytes, record_bytes;
 	const size_t there = scan_read(scan, offset, scan->record, RECORD_HEAD_BYTES_MAX);
-	bool intact;
 	*next = offset + 1;
 	if (there < RECORD_PROBE_BYTES || record_probe(scan->record, &head_bytes, &record_bytes, NULL) != BP_OK ||
 	    record_head_read(scan->record, there, &head, NULL) != BP_OK)
 		return BP_OK;
-	intact = record_verify(scan->record, scan_read(scan, offset, scan->record, record_bytes), &whole, NULL) == BP_OK;
+	bool intact = record_verify(scan->record, scan_read(scan, offset, scan->record, record_bytes), &whole, NULL) == BP_OK;
 	*next = offset + (intact ? record_bytes : head_bytes);
 	if (scan->record_count == scan->count)
 		scan->record_count++;
@@ -98,7 +96,7 @@ static const char *seen_name(const struct scan *scan, const struct seen *seen)
 	return (const char *)scan->names.bytes + seen->name;
 }
 
-/* Is the record that the index has at `offset` one that was found, intact and of that name? Records are found in the order of the file. */
+/* Is the record that the index has at `offset` one that was found, intact, of that name? Those found are in the file's order. */
 static bool record_found(const struct scan *scan, const struct index_entry *entry)
 {
 	size_t low = 0, high = scan->record_count;
@@ -127,11 +125,10 @@ static bp_status leaf_try(struct scan *scan, uint64_t offset, uint64_t *next, bp
 	*next = offset + PAGE_BYTES;
 	for (uint32_t i = 0; i < page.count; i++) {
 		struct index_entry entry;
-		bp_status status;
 		index_leaf_entry(&page, i, &entry);
 		if (record_found(scan, &entry))
 			continue;
-		status = seen_add(scan, entry.name, entry.offset, 0, false, error);
+		bp_status status = seen_add(scan, entry.name, entry.offset, 0, false, error);
 		if (status)
 			return status;
 	}
@@ -149,14 +146,13 @@ static bp_status file_scan(struct scan *scan, bp_error *error)
 	if (!window)
 		return error_memory(error, WINDOW);
 	while (!status && position + RECORD_PROBE_BYTES <= scan->file_bytes) {
-		const uint8_t *found;
 		if (position < base || position + RECORD_PROBE_BYTES > base + there) {
 			base = position;
 			there = scan_read(scan, base, window, WINDOW);
 			if (there < RECORD_PROBE_BYTES)
 				break; /* cut while it was read */
 		}
-		found = memchr(window + (position - base), 0x8B, there - (size_t)(position - base));
+		const uint8_t *found = memchr(window + (position - base), 0x8B, there - (size_t)(position - base));
 		position = found ? base + (uint64_t)(found - window) : base + there;
 		if (position + RECORD_PROBE_BYTES > base + there)
 			continue;
@@ -205,7 +201,6 @@ static bp_status records_save(struct scan *scan, struct archive_writer *writer, 
 	for (size_t i = 0, same; i < scan->count; i += same) {
 		const struct seen *first = &scan->seen[i];
 		const char *const name = seen_name(scan, first);
-		bp_status status;
 		for (same = 1; i + same < scan->count && strcmp(seen_name(scan, &scan->seen[i + same]), name) == 0; same++)
 			if (scan->seen[i + same].intact)
 				scan_tell(scan, name, scan->seen[i + same].offset, "a second intact record of this name was not saved");
@@ -216,7 +211,7 @@ static bp_status records_save(struct scan *scan, struct archive_writer *writer, 
 		}
 		if (scan_read(scan, first->offset, scan->record, first->bytes) != first->bytes)
 			return error_set(error, BP_ERROR_IO, first->offset, "%s: changed while it was read", scan->path);
-		status = archive_writer_add(writer, scan->record, first->bytes, error);
+		bp_status status = archive_writer_add(writer, scan->record, first->bytes, error);
 		if (status)
 			return status;
 		out->saved++;
@@ -269,12 +264,11 @@ bp_status archive_recover(const char *damaged, const char *path, recover_report_
 	struct archive_writer *writer = NULL;
 	struct recovery recovery = {0};
 	bool any = false;
-	bp_status status;
 	if (!scan)
 		return error_memory(error, sizeof *scan);
 	scan->report = report;
 	scan->user = user;
-	status = scan_open(scan, damaged, error);
+	bp_status status = scan_open(scan, damaged, error);
 	if (!status)
 		status = file_scan(scan, error);
 	if (status)

@@ -22,9 +22,9 @@ typedef void recover_report_fn(void *user, const char *material, const bp_error 
 
 /*
  * Saves every record of the file at `damaged` whose checksums all hold into a new archive at `path`, which is
- * put in its place at the end, even of the damaged one. Of two records of one name the first in the file is saved. The bytes of the records are not changed.
- * BP_ERROR_NOT_FOUND when there is no intact record at all; then nothing is written. BP_OK may come with a warning in *error, as
- * from archive_writer_commit.
+ * put in its place at the end, even of the damaged one. Of two records of one name the first in the file is saved. The bytes of
+ * the records are not changed. BP_ERROR_NOT_FOUND when there is no intact record at all; then nothing is written. BP_OK may come
+ * with a warning in *error, as from archive_writer_commit.
  */
 bp_status archive_recover(const char *damaged, const char *path, recover_report_fn *report, void *user, struct recovery *out,
                           bp_error *error);

@@ -174,7 +174,6 @@ static void totals_check(struct walk *walk, const struct archive_header *header)
 
 bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error)
 {
-	const struct archive_header *header;
 	struct archive_header again;
 	struct walk walk = {.archive = archive, .flags = flags, .report = report, .user = user, .first = error};
 	uint8_t bytes[ARCHIVE_HEADER_BYTES];
@@ -182,7 +181,7 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
 
 	if (!archive || flags & ~BP_VERIFY_DEEP)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no archive, or unknown flags");
-	header = archive_header(archive);
+	const struct archive_header *header = archive_header(archive);
 	walk.next_offset = ARCHIVE_HEADER_BYTES;
 	if (archive_read(archive, 0, bytes, sizeof bytes, &problem) != BP_OK ||
 	    archive_header_read(bytes, sizeof bytes, header->file_bytes, &again, &problem) != BP_OK)

@@ -21,7 +21,8 @@ bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *recor
 
 /*
  * Writes index and header, syncs, takes the place of what was at `path`; frees the writer, also on failure (then the old file is
- * as it was). BP_OK with a message in *error: the archive is in its place, and something was odd then (output_file_commit_synced).
+ * as it was). BP_OK with a message in *error: the archive is in its place, and something was odd then
+ * (output_file_commit_synced).
  */
 bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error);
 

@@ -52,7 +52,7 @@ static inline struct cell_angles cell_angles_of(const double wi[3], const double
  */
 void lattice_coordinates(struct lattice_dims dims, const double wi[3], const double wo[3], double out[3]);
 
-/* Such a coordinate -> the cell whose centre is before it and the fraction of the way to the next; 0 before the first and beyond the last. */
+/* Such a coordinate -> the cell whose centre is before it, and the fraction of the way to the next; 0 outside all centres. */
 static inline uint32_t centre_before(double at, uint32_t extent, double *fraction)
 {
 	double from = fmin(fmax(at - 0.5, 0), extent - 1);

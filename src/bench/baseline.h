@@ -16,7 +16,7 @@
 struct bench_material {
 	const char *name;
 	const struct lattice *lattice;
-	const uint8_t *raw; /* the file's bytes, for the lossless codecs; NULL: the planes are coded instead */
+	const uint8_t *raw; /* the file's bytes, for the lossless codecs */
 	size_t raw_bytes;
 	size_t budget_bytes; /* 0 for those that are not budgeted */
 	int effort;          /* 1..9, for those that know efforts */

@@ -12,8 +12,6 @@
  */
 #include "lobe.h"
 
-#include <stdlib.h>
-
 static double fresnel(double f0, double c)
 {
 	double root = sqrt(f0), n = (1 + root) / (1 - root), g = sqrt(n * n + c * c - 1);

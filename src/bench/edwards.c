@@ -19,8 +19,6 @@
  */
 #include "lobe.h"
 
-#include <stdlib.h>
-
 static double edwards_value(const double *shape, struct cell_angles a)
 {
 	double n = shape[0], r2 = shape[1] * shape[1], inside = 1 - (1 - a.cos_h * a.cos_h) / r2, q = 1 - a.cos_d;

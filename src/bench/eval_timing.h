@@ -12,7 +12,7 @@
 #include "brdfpack.h"
 #include "inputs.h"
 
-/* Each direction is paired with eight others, so that the pairs are many and what they are made from stays in the cache, as a renderer's does. */
+/* Each direction is paired with eight others: pairs are many, and what they are made from stays in the cache, as a renderer's. */
 enum { ROUNDS = 7, DIRECTIONS = 1 << 14, PARTNERS = 8, EVALUATIONS = PARTNERS * DIRECTIONS, BATCH = 1024, MOST = MATERIALS_MAX };
 
 enum figure {

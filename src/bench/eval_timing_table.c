@@ -1,7 +1,6 @@
 /* The medians as a Markdown table. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "merl/merl_file.h"
 #include "eval_timing.h"

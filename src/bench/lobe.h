@@ -22,12 +22,14 @@
 #ifndef BENCH_LOBE_H
 #define BENCH_LOBE_H
 
+#include <stdlib.h>
+
 #include "angles.h"
 #include "baseline.h"
 
 enum { LOBE_SHAPE_MAX = 3 };
 
-/* The models divide by cosines; from here on down to the horizon, and a little below, where lattices hold values, they go on with this one. */
+/* The models divide by cosines; from here down to the horizon, and a little below, where lattices hold values, by this one. */
 #define LOBE_COSINE_MIN 0.01
 
 /* One search variable: shape = exp(free) or 1 / (1 + exp(-free)). */

@@ -1,6 +1,5 @@
 /*
  * lossless.c: zlib, zstd and xz on the whole measured file, for scale: what is left when nothing may be lost.
- * Without the file's bytes the three planes of double are coded instead.
  */
 #include <lzma.h>
 #include <stdlib.h>
@@ -9,7 +8,6 @@
 #include <zstd.h>
 
 #include "error.h"
-#include "merl/merl_file.h"
 #include "baseline.h"
 
 enum { ZLIB_LEVEL = 6, ZSTD_LEVEL = 9, XZ_LEVEL = 0 };
@@ -25,7 +23,6 @@ struct codec {
 struct lossless_state {
 	const struct codec *codec;
 	struct lattice_dims dims;
-	bool file; /* a MERL file's bytes; else the planes in 1/sr */
 	size_t plain_bytes, bytes;
 	uint8_t *stream;
 };
@@ -91,43 +88,22 @@ static void lossless_free(void *opaque)
 static bp_status lossless_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
 {
 	const struct codec *codec = self->variant;
-	const size_t cells = lattice_cells(material->lattice->dims);
+	const size_t capacity = codec->bound(material->raw_bytes);
 	struct lossless_state *state = calloc(1, sizeof *state);
-	uint8_t *planes = NULL;
-	const uint8_t *plain = material->raw;
-	size_t capacity;
 	bp_status status = BP_OK;
 
 	if (!state)
 		return error_memory(error, sizeof *state);
-	*state = (struct lossless_state){.codec = codec, .dims = material->lattice->dims, .file = material->raw != NULL};
-	state->plain_bytes = material->raw ? material->raw_bytes : 3 * cells * sizeof(double);
-	if (!plain) {
-		planes = malloc(state->plain_bytes);
-		if (!planes) {
-			status = error_memory(error, state->plain_bytes);
-			goto out;
-		}
-		for (size_t c = 0; c < 3; c++)
-			memcpy(planes + c * cells * sizeof(double), material->lattice->rgb[c], cells * sizeof(double));
-		plain = planes;
-	}
-	capacity = codec->bound(state->plain_bytes);
-	state->stream = malloc(capacity);
-	if (!state->stream) {
+	*state = (struct lossless_state){
+		.codec = codec, .dims = material->lattice->dims, .plain_bytes = material->raw_bytes, .stream = malloc(capacity)};
+	if (!state->stream)
 		status = error_memory(error, capacity);
-		goto out;
-	}
-	state->bytes = codec->compress(plain, state->plain_bytes, state->stream, capacity);
-	if (!state->bytes) {
+	else if (!(state->bytes = codec->compress(material->raw, material->raw_bytes, state->stream, capacity)))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the codec refused the table");
-		goto out;
-	}
-	*out = state;
-	state = NULL;
-out:
-	free(planes);
-	lossless_free(state);
+	if (status)
+		lossless_free(state);
+	else
+		*out = state;
 	return status;
 }
 
@@ -139,24 +115,22 @@ static bp_status lossless_expand(const void *opaque, struct expansion *out, bp_e
 	const struct lossless_state *state = opaque;
 	const size_t cells = lattice_cells(state->dims);
 	uint8_t *plain = malloc(state->plain_bytes);
-	bp_status status = BP_OK;
 
 	if (!plain)
 		return error_memory(error, state->plain_bytes);
 	if (state->codec->decompress(state->stream, state->bytes, plain, state->plain_bytes) != state->plain_bytes) {
-		status = error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the codec could not decode its own stream");
-		goto out;
+		free(plain);
+		return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the codec could not decode its own stream");
 	}
 	out->unit = 1;
 	for (size_t c = 0; c < 3; c++)
 		for (size_t cell = 0; cell < cells; cell++) {
 			double value;
-			memcpy(&value, plain + (state->file ? HEADER_BYTES : 0) + (c * cells + cell) * sizeof value, sizeof value);
-			out->rgb[c][cell] = value > 0 ? (float)(state->file ? value * MERL_SCALE[c] : value) : 0;
+			memcpy(&value, plain + HEADER_BYTES + (c * cells + cell) * sizeof value, sizeof value);
+			out->rgb[c][cell] = value > 0 ? (float)(value * MERL_SCALE[c]) : 0;
 		}
-out:
 	free(plain);
-	return status;
+	return BP_OK;
 }
 
 #define LOSSLESS(codec_name, text, codec) \

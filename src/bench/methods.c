@@ -1,7 +1,6 @@
 #include "methods.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 const struct method METHODS[METHOD_COUNT] = {

@@ -6,7 +6,6 @@
  * record's.
  */
 #include <stdlib.h>
-#include <string.h>
 
 #include "codec/record.h"
 #include "error.h"
@@ -38,11 +37,10 @@ static bp_status profile_fit(const struct baseline *self, const struct bench_mat
 	                                    .effort = material->effort};
 	const struct record_source source = {.bytes = material->raw_bytes};
 	struct profile_state *state = calloc(1, sizeof *state);
-	bp_status status;
 
 	if (!state)
 		return error_memory(error, sizeof *state);
-	status =
+	bp_status status =
 		record_encode(material->lattice, material->name, &source, &options, &state->record, &state->bytes, &state->head, error);
 	if (status)
 		profile_free(state);

@@ -120,21 +120,19 @@ bp_status projection_make(const struct log_tensor *t, struct projection *q, bp_e
 {
 	const size_t H = t->dims.theta_h, D = t->dims.theta_d, P = t->dims.phi_d;
 	const size_t most = H > D ? (H > P ? H : P) : (D > P ? D : P);
-	size_t count;
-	double *gram;
 	bp_status status;
 
 	q->h = H < RANK_MAX ? H : RANK_MAX;
 	q->d = D < RANK_MAX ? D : RANK_MAX;
 	q->p = P < RANK_MAX ? P : RANK_MAX;
-	count = 3 * q->h * q->d * q->p + H * q->h + D * q->d + P * q->p + most * most + (D + q->d) * q->p;
+	size_t count = 3 * q->h * q->d * q->p + H * q->h + D * q->d + P * q->p + most * most + (D + q->d) * q->p;
 	q->core = malloc(count * sizeof *q->core);
 	if (!q->core)
 		return error_memory(error, count * sizeof *q->core);
 	q->basis_h = q->core + 3 * q->h * q->d * q->p;
 	q->basis_d = q->basis_h + H * q->h;
 	q->basis_p = q->basis_d + D * q->d;
-	gram = q->basis_p + P * q->p;
+	double *gram = q->basis_p + P * q->p;
 	gram_h(t, gram);
 	if ((status = leading_eigenvectors(gram, H, q->h, q->basis_h, error)))
 		goto out;

@@ -1,7 +1,6 @@
 #include "row.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "model/math/select.h"
 

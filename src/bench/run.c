@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -62,8 +61,8 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 	row->evaluated = method->evaluate && !method->prepare ? EVALUATED_MODEL : EVALUATED_TABLE;
 	if (method->prepare && (status = method->prepare(state, table, error)))
 		goto out;
-	status = method->evaluate ? time_model(method, state, run->pairs, REPEATS, &row->evaluate_ns, error)
-	                          : time_table(table, run->pairs, REPEATS, &row->evaluate_ns, error);
+	status = method->evaluate ? time_model(method, state, run->pairs, &row->evaluate_ns, error)
+	                          : time_table(table, run->pairs, &row->evaluate_ns, error);
 	if (!status)
 		status = comparison_measure(&run->plans, truth, table, &row->figures, NULL, error);
 out:
@@ -119,7 +118,7 @@ static void run_yardsticks(struct run *run, int at, const char *name, const stru
 		row = empty_row(at, METHOD_RAW_TABLE);
 		row.bytes = 3.0 * sizeof(double) * (double)lattice_cells(lattice->dims);
 		row.evaluated = EVALUATED_TABLE;
-		if (time_raw_table(lattice, run->pairs, REPEATS, &row.evaluate_ns, &error))
+		if (time_raw_table(lattice, run->pairs, &row.evaluate_ns, &error))
 			complain(run, name, "raw-table", &error);
 		else
 			fwrite(&row, sizeof row, 1, run->rows);
@@ -130,10 +129,9 @@ static bp_status read_truth(const struct run *run, const char *name, struct latt
                             bp_error *error)
 {
 	char path[4096];
-	bp_status status;
 
 	snprintf(path, sizeof path, "%s/%s.binary", run->truth, name);
-	status = lattice_read_path(path, &(struct merl_reading){.any_dims = true}, truth, error);
+	bp_status status = lattice_read_path(path, &(struct merl_reading){.any_dims = true}, truth, error);
 	if (!status && !lattice_dims_equal(truth->dims, dims))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s has other extents than the input", path);
 	return status;

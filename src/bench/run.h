@@ -11,7 +11,7 @@
 #include "methods.h"
 #include "timing.h"
 
-enum { LADDER_MAX = 16, RUN_WORKERS_MAX = 64, REPEATS = 3 };
+enum { LADDER_MAX = 16, RUN_WORKERS_MAX = 64 };
 
 struct run {
 	struct inputs inputs;

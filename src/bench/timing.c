@@ -12,7 +12,7 @@
 #include "model/math/select.h"
 #include "angles.h"
 
-enum { REPEATS_MAX = 16, READ_BYTES = 128 * 1024 };
+enum { READ_BYTES = 128 * 1024 };
 
 double median_of(double *values, int count) { return select_kth(values, (size_t)count, (size_t)(count - 1) / 2); }
 
@@ -49,13 +49,12 @@ static bp_status check_sum(double sum, bool negative, bp_error *error)
 	                 negative ? "negative" : "not finite");
 }
 
-bp_status time_model(const struct baseline *method, const void *state, const struct pairs *pairs, int repeats, double *ns,
-                     bp_error *error)
+bp_status time_model(const struct baseline *method, const void *state, const struct pairs *pairs, double *ns, bp_error *error)
 {
-	double seconds[REPEATS_MAX], sum = 0;
+	double seconds[REPEATS], sum = 0;
 	bool negative = false;
 
-	for (int r = 0; r < repeats; r++) {
+	for (int r = 0; r < REPEATS; r++) {
 		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 		for (int n = 0; n < PAIRS; n++) {
 			double rgb[3];
@@ -65,7 +64,7 @@ bp_status time_model(const struct baseline *method, const void *state, const str
 		}
 		seconds[r] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 	}
-	*ns = median_of(seconds, repeats) / PAIRS * 1e9;
+	*ns = median_of(seconds, REPEATS) / PAIRS * 1e9;
 	return check_sum(sum, negative, error);
 }
 
@@ -77,12 +76,12 @@ static size_t nearest_cell(struct lattice_dims dims, const double wi[3], const d
 	return lattice_index(dims, (uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]);
 }
 
-bp_status time_table(const struct expansion *table, const struct pairs *pairs, int repeats, double *ns, bp_error *error)
+bp_status time_table(const struct expansion *table, const struct pairs *pairs, double *ns, bp_error *error)
 {
-	double seconds[REPEATS_MAX], sum = 0;
+	double seconds[REPEATS], sum = 0;
 	bool negative = false;
 
-	for (int r = 0; r < repeats; r++) {
+	for (int r = 0; r < REPEATS; r++) {
 		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 		for (int n = 0; n < PAIRS; n++) {
 			size_t cell = nearest_cell(table->dims, pairs->wi[n], pairs->wo[n]);
@@ -92,15 +91,15 @@ bp_status time_table(const struct expansion *table, const struct pairs *pairs, i
 		}
 		seconds[r] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 	}
-	*ns = median_of(seconds, repeats) / PAIRS * 1e9;
+	*ns = median_of(seconds, REPEATS) / PAIRS * 1e9;
 	return check_sum(sum, negative, error);
 }
 
-bp_status time_raw_table(const struct lattice *lattice, const struct pairs *pairs, int repeats, double *ns, bp_error *error)
+bp_status time_raw_table(const struct lattice *lattice, const struct pairs *pairs, double *ns, bp_error *error)
 {
-	double seconds[REPEATS_MAX], sum = 0;
+	double seconds[REPEATS], sum = 0;
 
-	for (int r = 0; r < repeats; r++) {
+	for (int r = 0; r < REPEATS; r++) {
 		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 		for (int n = 0; n < PAIRS; n++) {
 			size_t cell = nearest_cell(lattice->dims, pairs->wi[n], pairs->wo[n]);
@@ -109,7 +108,7 @@ bp_status time_raw_table(const struct lattice *lattice, const struct pairs *pair
 		}
 		seconds[r] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 	}
-	*ns = median_of(seconds, repeats) / PAIRS * 1e9;
+	*ns = median_of(seconds, REPEATS) / PAIRS * 1e9;
 	return check_sum(sum, sum < 0, error);
 }
 

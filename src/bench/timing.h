@@ -26,21 +26,20 @@ double median_of(double *values, int count);
  * Pairs of directions, cosine-distributed over the hemisphere, above 1 degree over the horizon: the same
  * ones in every run. Enough of them that tables do not stay in the cache.
  */
-enum { PAIRS = 1 << 16 };
+enum { PAIRS = 1 << 16, REPEATS = 3 };
 struct pairs {
 	double wi[PAIRS][3], wo[PAIRS][3];
 };
 void pairs_make(struct pairs *out);
 
-/* Median nanoseconds per evaluation of `repeats` passes over the pairs; every result is checked to be finite and >= 0. */
-bp_status time_model(const struct baseline *method, const void *state, const struct pairs *pairs, int repeats, double *ns,
-                     bp_error *error);
+/* Median nanoseconds per evaluation of REPEATS passes over the pairs; every result is checked to be finite and >= 0. */
+bp_status time_model(const struct baseline *method, const void *state, const struct pairs *pairs, double *ns, bp_error *error);
 /* The same by nearest look-up in a decoded table of float ... */
-bp_status time_table(const struct expansion *table, const struct pairs *pairs, int repeats, double *ns, bp_error *error);
+bp_status time_table(const struct expansion *table, const struct pairs *pairs, double *ns, bp_error *error);
 /* ... and in the raw table of double: the yardstick of a renderer that reads the measured file. */
-bp_status time_raw_table(const struct lattice *lattice, const struct pairs *pairs, int repeats, double *ns, bp_error *error);
+bp_status time_raw_table(const struct lattice *lattice, const struct pairs *pairs, double *ns, bp_error *error);
 
-/* Reads a whole file as cat does, 128 KiB at a time; wall-clock seconds. Its bytes go to *bytes (malloc'ed) when that is not NULL. */
+/* Reads a whole file as cat does, 128 KiB at a time; wall-clock seconds. *bytes, unless NULL, gets its bytes (malloc'ed). */
 bp_status time_read(const char *path, double *seconds, uint8_t **bytes, size_t *count, bp_error *error);
 
 #endif

@@ -7,8 +7,6 @@
  */
 #include "lobe.h"
 
-#include <stdlib.h>
-
 static double ward_value(const double *shape, struct cell_angles a)
 {
 	double alpha2 = shape[0] * shape[0], tan2 = 1 / (a.cos_h * a.cos_h) - 1;

@@ -1,7 +1,6 @@
 #include "bit_mixer.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* No value of these formulas lies nearer than 9e-5 to a half, so any decent libm rounds alike. */
 static void tables_fill(struct mixer_tables *tables)

@@ -1,7 +1,7 @@
 /*
- * bit_mixer.h: predicts a bit from one context, from two, or from four. Every context has an adaptive probability. Two are averaged;
- * four are weighed by a small online regression in the logistic domain (Mattern 2012; the PAQ coders of Mahoney), which takes three
- * times as long. Integers only; FORMAT.md, "Mixed bits".
+ * bit_mixer.h: predicts a bit from one context, from two, or from four. Every context has an adaptive probability. Two are
+ * averaged; four are weighed by a small online regression in the logistic domain (Mattern 2012; the PAQ coders of Mahoney), which
+ * takes three times as long. Integers only; FORMAT.md, "Mixed bits".
  */
 #ifndef CODEC_BIT_MIXER_H
 #define CODEC_BIT_MIXER_H
@@ -33,7 +33,7 @@ enum {
 typedef int32_t mixer_lanes __attribute__((vector_size(4 * MIXER_INPUTS)));
 typedef uint32_t mixer_words __attribute__((vector_size(4 * MIXER_INPUTS)));
 
-/* Tables, the same for all: stretch[i] = ln(p/(1-p)) of p = (i + 1/2)/4096, and its inverse, both with 8 bits behind the point. */
+/* Tables, the same for all: stretch[i] = ln(p/(1-p)) of p = (i + 1/2)/4096, and its inverse, with 8 bits behind the point. */
 struct mixer_tables {
 	int16_t stretch[4096];
 	uint16_t squash[4096];

@@ -75,9 +75,8 @@ uint32_t range_decode_even(struct range_decoder *decoder, uint32_t count)
 {
 	uint32_t value = 0;
 	while (count-- > 0) {
-		uint32_t bit;
 		decoder->range >>= 1;
-		bit = decoder->code >= decoder->range;
+		uint32_t bit = decoder->code >= decoder->range;
 		if (bit)
 			decoder->code -= decoder->range;
 		value = value << 1 | bit;

@@ -33,7 +33,7 @@ void range_encode(struct range_encoder *encoder, struct bit_model *model, uint32
 void range_encode_even(struct range_encoder *encoder, uint32_t value, uint32_t count);
 /* Writes the bytes that were held back, now that their carry is known; `first`: their first one is not written. */
 void range_bytes_write(struct byte_buffer *out, uint32_t cache, uint64_t pending, uint32_t carry, int first);
-/* Moves the top byte of low out, once no later carry can change it. The encoder is passed on by its members, so that it can be in registers. */
+/* Moves the top byte of low out, once no later carry can change it. Members are passed on, so that they can be in registers. */
 static inline void range_encoder_shift(struct range_encoder *encoder)
 {
 	if (encoder->low < UINT32_C(0xFF000000) || encoder->low > UINT32_MAX) {
@@ -52,7 +52,7 @@ static inline void range_encoder_refill(struct range_encoder *encoder)
 		range_encoder_shift(encoder);
 	}
 }
-/* A bit whose probability of being 0 is p / 65536, 1..65535, as somebody else knows it. Without a branch on the bit: half of them surprise. */
+/* A bit that is 0 with the probability p / 65536, p = 1..65535, from the caller. No branch on the bit: half of them surprise. */
 static inline void range_encode_with(struct range_encoder *encoder, uint32_t p, uint32_t bit)
 {
 	const uint32_t bound = (encoder->range >> 16) * p;
@@ -61,9 +61,9 @@ static inline void range_encode_with(struct range_encoder *encoder, uint32_t p, 
 	range_encoder_refill(encoder);
 }
 /* Bytes that the stream would take if it were ended now. */
-static inline size_t range_encoder_bytes(const struct range_encoder *encoder, size_t start)
+static inline size_t range_encoder_bytes(const struct range_encoder *encoder)
 {
-	return encoder->out->count - start + (size_t)encoder->pending + 4;
+	return encoder->out->count + (size_t)encoder->pending + 4;
 }
 void range_encoder_end(struct range_encoder *encoder);
 

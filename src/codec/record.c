@@ -62,10 +62,9 @@ static bp_status section_fetch(const struct record_section *entry, record_fetch_
                                bp_error *error)
 {
 	uint8_t *bytes = malloc(entry->bytes);
-	bp_status status;
 	if (!bytes)
 		return error_memory(error, entry->bytes);
-	status = fetch(user, entry->offset, bytes, entry->bytes, error);
+	bp_status status = fetch(user, entry->offset, bytes, entry->bytes, error);
 	if (!status && bytes_crc32(bytes, entry->bytes) != entry->crc32)
 		status = error_set(error, BP_ERROR_CHECKSUM, entry->offset, "the checksum of a section of type %u differs", entry->type);
 	if (status) {
@@ -83,7 +82,6 @@ static bp_status sections_fetch(const struct record_head *head, const struct pro
 {
 	for (uint32_t i = 0; i < head->section_count && head->sections[i].layer < layers; i++) {
 		const struct record_section *entry = &head->sections[i];
-		bp_status status;
 		if (!kind_among(codec->kinds, codec->kind_count, entry)) {
 			if (kind_among(codec->retired, codec->retired_count, entry))
 				return error_set(
@@ -96,7 +94,7 @@ static bp_status sections_fetch(const struct record_head *head, const struct pro
 				                 head->name, entry->type, entry->codec, entry->version);
 			continue;
 		}
-		status = section_fetch(entry, fetch, user, &held[*count], error);
+		bp_status status = section_fetch(entry, fetch, user, &held[*count], error);
 		if (status)
 			return status;
 		sections[*count] = (struct section_bytes){.entry = entry, .bytes = held[*count]};
@@ -113,7 +111,6 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 	uint8_t *held[RECORD_SECTIONS_MAX];
 	uint32_t count = 0, failed = UINT32_MAX;
 	struct model *model;
-	bp_status status;
 
 	if (!codec)
 		return error_set(error, BP_ERROR_UNSUPPORTED, 18, "%s: profile %u is not known; a newer program is needed", head->name,
@@ -128,7 +125,7 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 	model->horizon_limit = head->horizon_limit;
 	memcpy(model->colour, head->colour, sizeof model->colour);
 	model->layer_count = layers;
-	status = sections_fetch(head, codec, layers, fetch, user, sections, held, &count, error);
+	bp_status status = sections_fetch(head, codec, layers, fetch, user, sections, held, &count, error);
 	if (!status) {
 		status = codec->decode(head, sections, count, model, &failed, error);
 		status = error_shift(status, failed < count ? sections[failed].entry->offset : 0, error);

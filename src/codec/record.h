@@ -88,8 +88,7 @@ struct record_head {
 	struct record_layer layers[LAYERS_MAX];
 	uint32_t section_count;
 	struct record_section sections[RECORD_SECTIONS_MAX];
-	uint32_t
-		left_out; /* bit 0: c_hd, bit 1: c_hphi, bit 2: every c_dphi|h; these pairs are 1 in all channels and are not stored */
+	uint32_t left_out; /* bit 0: c_hd, 1: c_hphi, 2: every c_dphi|h; these pairs are 1 in all channels and are not stored */
 	uint32_t channels; /* bit c: channel c is wanted. All three when parsed; who loads one alone clears the others */
 };
 
@@ -132,7 +131,7 @@ uint32_t record_layers_for(const struct record_head *head, double max_log_rmse);
 /* Checks the head and every section's checksum of a record that is in memory, `count` bytes. */
 bp_status record_verify(const uint8_t *record, size_t count, struct record_head *head, bp_error *error);
 
-/* The head, and what record_decode of these layers (1 or more) fetches: not what is optional and of no kind that this program knows. */
+/* The head, and what record_decode of these layers (1 or more) fetches: not what is optional and unknown to this program. */
 uint32_t record_bytes_needed(const struct record_head *head, uint32_t layers);
 
 /* Fetches and checks the sections of layers 0..layers-1 (0: all) and builds the model; the caller frees it with model_free. */

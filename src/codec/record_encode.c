@@ -49,11 +49,10 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 	struct encode_request request = packing->request;
 	struct section_list sections = {0};
 	struct model *decoded = NULL;
-	bp_status status;
 
 	request.record_bytes_max = record_bytes_max;
 	stage_enter(STAGE_CODE);
-	status = watch_tell(request.options->watch, 0.6, error);
+	bp_status status = watch_tell(request.options->watch, 0.6, error);
 	if (status)
 		goto out;
 	status = packing->encoder->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out,
@@ -92,8 +91,8 @@ struct bracket {
 };
 
 /*
- * Where to try next: errors fall about as bytes^-k, with k from the last two sizes, 0.85 before. A little more is asked than needed.
- * Where that would not shrink the bracket, its middle.
+ * Where to try next: errors fall about as bytes^-k, with k from the last two sizes, 0.85 before. A little more is asked than
+ * needed. Where that would not shrink the bracket, its middle.
  */
 static uint32_t bracket_next(const struct bracket *b, double max_error)
 {
@@ -163,13 +162,12 @@ bp_status record_encode(const struct lattice *lattice, const char *name, const s
 	struct model *model = NULL;
 	size_t name_bytes = strlen(name);
 	const char *fault = name_fault(name, name_bytes);
-	bp_status status;
 
 	if (!packing.encoder)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
 	if (fault)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);
-	status = model_fit(lattice, options, &model, error);
+	bp_status status = model_fit(lattice, options, &model, error);
 	if (status)
 		return status;
 	packing.model = model;

@@ -1,5 +1,4 @@
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "bytes.h"
@@ -70,13 +69,12 @@ static bp_status sections_read(struct byte_reader *in, struct record_head *head,
 	for (uint32_t i = 0; i < head->section_count; i++) {
 		struct record_section *entry = &head->sections[i];
 		uint64_t at = in->at;
-		uint16_t zero;
 		entry->type = read_u16(in);
 		entry->codec = read_u16(in);
 		entry->version = read_u16(in);
 		entry->layer = read_u16(in);
 		entry->flags = read_u16(in);
-		zero = read_u16(in);
+		uint16_t zero = read_u16(in);
 		entry->offset = read_u32(in);
 		entry->bytes = read_u32(in);
 		entry->crc32 = read_u32(in);
@@ -186,15 +184,13 @@ bp_status record_head_read(const uint8_t *bytes, size_t count, struct record_hea
 {
 	struct record_head head;
 	struct byte_reader in;
-	const char *fault;
 	size_t name_bytes = 0;
-	bp_status status;
 
 	memset(&head, 0, sizeof head);
 	head.channels = 7;
 	if (count < RECORD_PROBE_BYTES)
 		return error_set(error, BP_ERROR_CORRUPT, count, "the record ends after %zu bytes", count);
-	status = record_probe(bytes, &head.head_bytes, &head.record_bytes, error);
+	bp_status status = record_probe(bytes, &head.head_bytes, &head.record_bytes, error);
 	if (status)
 		return status;
 	if (head.head_bytes > count)
@@ -215,7 +211,7 @@ bp_status record_head_read(const uint8_t *bytes, size_t count, struct record_hea
 	if (status)
 		return status;
 	read_bytes(&in, head.name, name_bytes);
-	fault = name_fault(head.name, name_bytes);
+	const char *fault = name_fault(head.name, name_bytes);
 	if (in.failed || fault)
 		return error_set(error, BP_ERROR_CORRUPT, in.at - name_bytes, "the record's name is not legal: %s",
 		                 fault ? fault : "short");

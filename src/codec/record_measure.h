@@ -7,8 +7,8 @@
 #include "section.h"
 
 /*
- * Head and sections -> record (sections_join), with the figures of every layer against the lattice; *record is malloc'ed. `decoded`:
- * the model that they decode to, where the caller has it, or NULL.
+ * Head and sections -> record (sections_join), with the figures of every layer against the lattice; *record is malloc'ed.
+ * `decoded`: the model that they decode to, where the caller has it, or NULL.
  * `watch` is told before every layer.
  */
 bp_status record_measure(struct record_head *head, const struct section_list *sections, const struct lattice *lattice,

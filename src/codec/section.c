@@ -1,6 +1,5 @@
 #include "section.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
@@ -32,13 +31,12 @@ void section_list_free(struct section_list *list)
 /* Places the sections behind the head and measures the layers. */
 static bp_status head_lay_out(struct record_head *head, const struct section_list *sections, bp_error *error)
 {
-	uint64_t at;
 	head->section_count = sections->count;
 	head->head_bytes = record_head_size(strlen(head->name), head->layer_count, sections->count);
 	if (head->head_bytes > RECORD_HEAD_BYTES_MAX)
 		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "the record's head would take %u bytes, the limit is %d",
 		                 head->head_bytes, RECORD_HEAD_BYTES_MAX);
-	at = head->head_bytes;
+	uint64_t at = head->head_bytes;
 	for (uint32_t l = 0; l < head->layer_count; l++)
 		head->layers[l].bytes = head->head_bytes;
 	for (uint32_t i = 0; i < sections->count; i++) {
@@ -67,13 +65,12 @@ bp_status sections_join(struct record_head *head, const struct section_list *sec
 {
 	struct byte_buffer out = {0};
 	const char *fault = name_fault(head->name, strlen(head->name));
-	bp_status status;
 	if (fault)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%s\" is not a legal name: %s", head->name, fault);
 	if (!lattice_dims_legal(head->dims) || head->layer_count < 1 || head->layer_count > LAYERS_MAX)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a record of %ux%ux%u cells and %u layers cannot be written",
 		                 head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->layer_count);
-	status = head_lay_out(head, sections, error);
+	bp_status status = head_lay_out(head, sections, error);
 	if (status)
 		return status;
 	record_head_write(head, &out);

@@ -16,7 +16,7 @@ struct section_list {
 	struct byte_buffer bytes[RECORD_SECTIONS_MAX];
 };
 
-/* A new section of this layer (not below the last one's); the caller writes into the buffer returned. NULL when there are too many. */
+/* A new section of this layer (not below the last one's); the caller writes into the buffer. NULL: there are too many. */
 struct byte_buffer *section_add(struct section_list *list, enum section_type type, uint16_t codec, uint16_t version,
                                 uint32_t layer, uint32_t flags, double error);
 void section_list_free(struct section_list *list);

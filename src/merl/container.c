@@ -96,7 +96,7 @@ static bool formats_choose(struct archive *archive, enum container_order order)
 	return archive_read_support_format_zip(archive) == ARCHIVE_OK && archive_read_support_format_raw(archive) == ARCHIVE_OK;
 }
 
-/* At the end of a tar, or of a compressed file: does the file end here too? A zip has its directory there, and is looked at otherwise. */
+/* At the end of a tar, or of a compressed file: does the file end too? A zip's directory is there: container_fault sees it. */
 static void end_look(struct container *container)
 {
 	const int format = archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK;

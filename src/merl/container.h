@@ -3,9 +3,9 @@
  * without unpacking. Part of the tool, not of the library.
  *
  * Members that count are named *.binary or *.bsdf (in either case), or like a container, and not hidden ("._x.binary" is
- * no table); others are passed over and counted. Of these, what is no file with bytes of its own (a link, a device), encrypted, or
- * a container itself has a fault. Tars that were joined, one behind the other, are read as one. A single compressed MERL file (x.binary.gz) is a
- * container of one member. Messages name the member but not the container: the caller puts that in front.
+ * no table); others are passed over and counted. Of these, what is no file with bytes of its own (a link, a device), encrypted,
+ * or a container itself has a fault. Tars that were joined, one behind the other, are read as one. A single compressed MERL file
+ * (x.binary.gz) is a container of one member. Messages name the member but not the container: the caller puts that in front.
  */
 #ifndef MERL_CONTAINER_H
 #define MERL_CONTAINER_H
@@ -18,11 +18,10 @@
 struct container;
 
 struct container_member {
-	const char *path; /* inside the container, as stored; valid until the next call */
-	uint32_t ordinal; /* among all entries of the container, from 0 */
-	uint64_t bytes;   /* UINT64_MAX where the format does not say */
-	const char
-		*fault; /* why it cannot be packed, with the remedy; NULL: nothing is known against it. Valid as long as the path */
+	const char *path;  /* inside the container, as stored; valid until the next call */
+	uint32_t ordinal;  /* among all entries of the container, from 0 */
+	uint64_t bytes;    /* UINT64_MAX where the format does not say */
+	const char *fault; /* why it cannot be packed, with the remedy; NULL: nothing is known against it. As long as the path */
 };
 
 enum container_order {
@@ -32,14 +31,14 @@ enum container_order {
 
 /*
  * Opens a regular file. BP_ERROR_UNSUPPORTED: not a container that can be read in that order (try
- * CONTAINER_SEQUENTIAL after CONTAINER_INDEXED); BP_ERROR_BAD_INPUT: damaged, or no container at all, and what it is then; BP_ERROR_IO.
- * charset: of members' names that do not say that they are UTF-8, as iconv calls it; NULL: none is known, and such names stay as
- * they are.
+ * CONTAINER_SEQUENTIAL after CONTAINER_INDEXED); BP_ERROR_BAD_INPUT: damaged, or no container at all, and what it is then;
+ * BP_ERROR_IO. charset: of members' names that do not say that they are UTF-8, as iconv calls it; NULL: none is known, and such
+ * names stay as they are.
  */
 bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out,
                          bp_error *error);
 
-/* What is wrong with the container as a whole although its members can be read, known when its end has been reached; NULL: nothing. */
+/* What is wrong with the whole container although its members can be read, known at its end; NULL: nothing. */
 const char *container_remark(const struct container *container);
 
 /*

@@ -34,7 +34,7 @@ static bool all_zeros(int fd, off_t at)
 
 #define REST "something else stands behind its end in the same file, and is not read; separate them"
 
-/* A zip's last record tells of other disks, and where the directory should stand: later, and something else stands before the zip. */
+/* A zip's last record tells of other disks, and where the directory should stand; later: something else is before the zip. */
 static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 {
 	struct stat about;

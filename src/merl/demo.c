@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "demo_speckle.h"
 #include "error.h"
@@ -25,7 +24,7 @@ static const struct demo_material MATERIALS[] = {
 
 static const double PI = 3.14159265358979323846;
 
-/* Directions lower than this get its values, also those below the horizon that were measured: mirrors then reach 1e5 /sr, as measured ones do. */
+/* Directions lower than this get its values, so also measured ones below the horizon: mirrors reach 1e5 /sr, as real ones do. */
 static const double COSINE_MIN = 0.05;
 
 size_t demo_count(void) { return sizeof MATERIALS / sizeof *MATERIALS; }

@@ -14,9 +14,9 @@
  * GGX(a) = D(h) V(ci, co), the distribution of Walter et al. 2007 with Heitz's height-correlated
  * masking (2014); F(s) = s + (1 - s) (1 - cos d)^5, Schlick 1994, C the same with coat; S is the
  * larger of the two lobes' mean colour. A film multiplies F by an interference term: a cosine of the path
- * difference at 650, 532, 450 nm. Where there is an edge both lobes end there: times 1/(1 + (sin theta_h/edge)^8); speckle makes them
- * glitter (demo_speckle.h): this is what measured mirrors and flakes of other databases have, colour that turns with the angle,
- * speckle, next to nothing off the lobe. All terms are reciprocal; what goes out is less than what came in.
+ * difference at 650, 532, 450 nm. Where there is an edge both lobes end there: times 1/(1 + (sin theta_h/edge)^8); speckle makes
+ * them glitter (demo_speckle.h): this is what measured mirrors and flakes of other databases have, colour that turns with the
+ * angle, speckle, next to nothing off the lobe. All terms are reciprocal; what goes out is less than what came in.
  *
  * The instrument: streaks along phi_d, noise that grows beyond theta_d = 70 degrees, drop-outs beyond 80,
  * dark readings that come out negative, and the database's pattern of cells below the horizon; or no direction further than

@@ -52,7 +52,7 @@ static struct tally tally_take(const struct lattice *lattice, const uint8_t *mar
 	return tally;
 }
 
-/* The pattern of holes.h: its value, and marks[cells]: 1 for the cells that are holes where they hold it. Nothing found: marks are 0. */
+/* The pattern of holes.h: its value, and marks[cells], 1 for cells that are holes where they hold it; all 0: nothing found. */
 static bp_status pattern_find(const struct lattice *lattice, uint8_t *marks, double value[3], bp_error *error)
 {
 	const struct lattice_dims dims = lattice->dims;

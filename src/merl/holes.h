@@ -1,12 +1,12 @@
 /*
  * holes.h: cells that were never measured, in tables that do not say so.
  *
- * The database marks them by negative values. Who reads a file and writes it back may lose these: common readers clamp at 0, others
- * put a small constant there, take absolute values, or stretch all values to [0, 1]. What is left is one value, the same in every
- * such cell, and the pattern. In a table without any negative value, where
+ * The database marks them by negative values. Who reads a file and writes it back may lose these: common readers clamp at 0,
+ * others put a small constant there, take absolute values, or stretch all values to [0, 1]. What is left is one value, the same
+ * in every such cell, and the pattern. In a table without any negative value, where
  *
  *     v = what the cell furthest below the horizon holds, in each channel
- *     L = the lowest smaller cosine at the centre of a cell that lies wholly below the horizon and holds something else; 0 for none
+ *     L = the lowest smaller cosine at the centre of a cell that lies wholly below the horizon and holds something else, or 0
  *
  * (and where that is above the database's own limit of -0.061 by less than 0.01 that limit, so that dark cells at the edge stay
  * measured), cells that hold v and whose centre is below L are holes, provided that

@@ -104,8 +104,8 @@ void quarter_cos_sin(double t, double *cosine, double *sine);
  * provided the centre's angles are taken with pi = 3.1416. Every other cell gets a value, measured or not.
  *
  * lattice_horizon_limit: the limit of one material: the lowest smaller cosine at the centre of a
- * valid cell that lies wholly below, in [-sin 5 degrees, 0] (never below -0.0872). It is one float, rounded down, so that a record may
- * store it as float or double and no cell changes sides.
+ * valid cell that lies wholly below, in [-sin 5 degrees, 0] (never below -0.0872). It is one float, rounded down, so that a
+ * record may store it as float or double and no cell changes sides.
  *
  * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere. Fails only for dims that are not legal.
  */

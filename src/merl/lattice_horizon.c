@@ -52,7 +52,7 @@ static double phi_cosine(double x, double extent, double scale)
 	return cosine;
 }
 
-/* At cell + offset along each axis, the angles times `scale`: 0 and 1 for the lower corner, 0.5 and CENTRE_SCALE for the centre. */
+/* At cell + offset along each axis, angles times `scale`: 0 and 1 for the lower corner, 0.5 and CENTRE_SCALE for the centre. */
 static void cosines_fill(struct lattice_dims dims, double offset, double scale, struct cosines *out)
 {
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
@@ -105,7 +105,7 @@ double lattice_horizon_limit(const struct lattice *lattice)
 	return (double)nextafterf((float)(lowest > LATTICE_DEEPEST_HORIZON ? lowest : LATTICE_DEEPEST_HORIZON), -1);
 }
 
-/* 1 where the smaller cosine at the cell's centre is below the limit; highest: and all of the cell below the horizon. NULL: wherever it is. */
+/* 1: the smaller cosine at the centre is below the limit; highest: and all the cell below the horizon; NULL: anywhere. */
 static void below_fill(struct lattice_dims dims, double limit, const struct cosines *highest, uint8_t *below)
 {
 	struct cosines centre;

@@ -1,6 +1,4 @@
-/*
- * licence.h: texts that say on what terms measured files may be used. They are not packed; who packs should know that they are there.
- */
+/* licence.h: texts that say on what terms measured files may be used. They are not packed; who packs should know of them. */
 #ifndef MERL_LICENCE_H
 #define MERL_LICENCE_H
 
@@ -14,7 +12,7 @@ struct licences {
 	size_t count;
 };
 
-/* Keeps the file's name where it is that of such a text: LICENSE.txt, COPYING, NOTICE.md, rgl-licence.pdf ... member: inside that container, or NULL. */
+/* Keeps the name of such a text: LICENSE.txt, COPYING, NOTICE.md, rgl-licence.pdf ... member: inside that container, or NULL. */
 void licences_note(struct licences *licences, const char *path, const char *member);
 void licences_free(struct licences *licences);
 

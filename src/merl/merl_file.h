@@ -22,11 +22,10 @@ typedef void merl_seen_fn(void *user, const void *bytes, size_t count);
 struct merl_reading {
 	merl_seen_fn *seen; /* NULL: nobody looks on */
 	void *seen_user;
-	bool any_dims; /* accept any legal extents */
-	struct carried *
-		carried; /* NULL, or where to put what the file carries (carried.h), unchecked; set on success, the caller frees its bytes */
-	struct origin *origin; /* NULL, or where to say what kind of file it was; set on success */
-	uint64_t *file_bytes;  /* NULL, or where to put the file's size; set on success */
+	bool any_dims;           /* accept any legal extents */
+	struct carried *carried; /* NULL, or for what the file carries (carried.h), unchecked; set on success, the caller frees it */
+	struct origin *origin;   /* NULL, or where to say what kind of file it was; set on success */
+	uint64_t *file_bytes;    /* NULL, or where to put the file's size; set on success */
 };
 
 /*
@@ -37,7 +36,8 @@ struct merl_reading {
  * - a tensor file of the RGL database, evaluated on MERL's lattice (rgl_file.h, rgl_lattice.h).
  *
  * Refuses (BP_ERROR_BAD_INPUT, with expected and found, or what the file is instead) any other, a short stream, trailing bytes
- * of a table, no valid cell at all. The error's offset is where the file ends or should, or where it is wrong. On success the caller owns *out.
+ * of a table, no valid cell at all. The error's offset is where the file ends or should, or where it is wrong. On success the
+ * caller owns *out.
  */
 bp_status lattice_read(merl_read_fn *read, void *user, const struct merl_reading *reading, struct lattice *out, bp_error *error);
 /*
@@ -54,7 +54,7 @@ bp_status lattice_read_path(const char *path, const struct merl_reading *reading
 bp_status lattice_write_path(const char *path, enum output_rule rule, const struct expansion *table, const uint8_t *below,
                              const uint8_t *carried, size_t carried_bytes, bp_error *error);
 
-/* Whether the lattice, of the table's extents, is what reading such a file gives: the same cells valid, the same values (1/sr) to the bit. */
+/* Is the lattice, of the table's extents, what reading such a file gives: the same cells valid, the same values to the bit? */
 bool lattice_is_written(const struct lattice *lattice, const struct expansion *table, const uint8_t *below);
 
 /*

@@ -1,8 +1,8 @@
 /*
- * Canonical decompositions of the Basic Multilingual Plane, by mark: {mark, pairs of a composed character and its base}; mark 0: none.
- * From the Unicode Character Database (version 14.0.0, as Python's unicodedata gives it), without Hangul, which is arithmetic, and
- * without the compatibility ideographs. Numbers stand for what runs from right to left, cannot stand alone, or has a twin that looks
- * the same.
+ * Canonical decompositions of the Basic Multilingual Plane, by mark: {mark, pairs of a composed character and its base}; mark 0:
+ * none. From the Unicode Character Database (version 14.0.0, as Python's unicodedata gives it), without Hangul, which is
+ * arithmetic, and without the compatibility ideographs. Numbers stand for what runs from right to left, cannot stand alone, or
+ * has a twin that looks the same.
  */
 // clang-format off
 {0, u"\u0340\u0300\u0341\u0301\u0343\u0313\u0374\u02B9\u037E;\u0387\u00B7\u1F71\u03AC\u1F73\u03AD\u1F75\u03AE\u1F77\u03AF"

@@ -41,8 +41,8 @@ static bp_status too_large(bp_error *error)
 }
 
 /*
- * How far to read on: a byte past the end that is known, to see that it is one; twice as far where none is, or where the file has grown
- * past it, or has bytes although it was said to be empty.
+ * How far to read on: a byte past the end that is known, to see that it is one; twice as far where none is, or where the file has
+ * grown past it, or has bytes although it was said to be empty.
  */
 static size_t goal_of(const struct image *image, uint64_t available, size_t most)
 {

@@ -126,8 +126,8 @@ static double level_at(const struct rgl_material *material, double axis, struct 
 }
 
 /*
- * Whether the lattice resolves the function here: at the cell's edges it is what a reader of the table interpolates between the cells'
- * centres. Then a centre's value is the better one, since a mean over the cell would make the lobe wider.
+ * Whether the lattice resolves the function here: at the cell's edges it is what a reader of the table interpolates between the
+ * cells' centres. Then a centre's value is the better one, since a mean over the cell would make the lobe wider.
  */
 static bool centres_suffice(const struct rgl_material *material, uint32_t i, uint32_t extent)
 {

@@ -2,10 +2,10 @@
  * source.h: what `build` is given -> materials: MERL files, those of the RGL database, folders searched to the bottom,
  * tars and zips. Part of the tool, not of the library.
  *
- * What counts. A file given by name is a measured file (MERL's, or one of the RGL database) or a container by its content, whatever it
- * is called. In a folder, *.binary and *.bsdf are measured files, as is what begins like one of the RGL database, and *.zip, *.tar, *.tar.gz (.bz2 .xz .lzma
- * .zst .Z), *.tgz, *.tbz, *.tbz2, *.txz, *.tzst, and *.binary.gz and so on are containers; other and hidden
- * files (".x") are passed over and counted. A material's name is the file's stem: the last part
+ * What counts. A file given by name is a measured file (MERL's, or one of the RGL database) or a container by its content,
+ * whatever it is called. In a folder, *.binary and *.bsdf are measured files, as is what begins like one of the RGL database, and
+ * *.zip, *.tar, *.tar.gz (.bz2 .xz .lzma .zst .Z), *.tgz, *.tbz, *.tbz2, *.txz, *.tzst, and *.binary.gz and so on are containers;
+ * other and hidden files (".x") are passed over and counted. A material's name is the file's stem: the last part
  * of its path without the suffix. Links to files and folders are followed; a folder is searched once.
  *
  * Two kinds of materials. An *item* can be read by any worker on its own: a file, or a member of a
@@ -65,9 +65,9 @@ struct source_list {
 
 /*
  * Lists what the inputs hold; reads no table. Every material that is wanted is listed or refused: refused are illegal names, what
- * has no bytes of its own, and of materials of one name all but the first in the order of paths and members, whatever the order of
- * the inputs. An input that is not there ends it (BP_ERROR_IO; nothing to free then), one without any material is told. An empty
- * result is no error here. Free with source_list_free.
+ * has no bytes of its own, and of materials of one name all but the first in the order of paths and members, whatever the order
+ * of the inputs. An input that is not there ends it (BP_ERROR_IO; nothing to free then), one without any material is told. An
+ * empty result is no error here. Free with source_list_free.
  */
 bp_status source_scan(const char *const *inputs, size_t count, const struct source_options *options, struct source_list *out,
                       bp_error *error);

@@ -16,7 +16,7 @@ static bool ends_with(const char *text, const char *suffix)
 	return text_bytes > suffix_bytes && strcasecmp(text + text_bytes - suffix_bytes, suffix) == 0;
 }
 
-static const char *const MEASURED[] = {".binary", ".bsdf", NULL};
+const char *const SOURCE_SUFFIXES[] = {".binary", ".bsdf", NULL};
 static const char *const COMPRESSIONS[] = {".gz", ".bz2", ".xz", ".lzma", ".zst", ".Z", NULL};
 static const char *const ARCHIVES[] = {".zip", ".tar", ".tgz", ".tbz", ".tbz2", ".txz", ".tzst", NULL};
 
@@ -41,7 +41,7 @@ enum source_kind source_kind_by_name(const char *path)
 	const char *name = base_name(path);
 	if (name[0] == '.')
 		return SOURCE_KIND_OTHER;
-	if (suffix_among(name, MEASURED))
+	if (suffix_among(name, SOURCE_SUFFIXES))
 		return SOURCE_KIND_MEASURED;
 	if (suffix_among(name, ARCHIVES))
 		return SOURCE_KIND_CONTAINER;
@@ -56,7 +56,7 @@ enum source_kind source_kind_by_name(const char *path)
 		return SOURCE_KIND_OTHER;
 	memcpy(inner, name, bytes);
 	inner[bytes] = '\0';
-	return suffix_among(inner, MEASURED) || ends_with(inner, ".tar") ? SOURCE_KIND_CONTAINER : SOURCE_KIND_OTHER;
+	return suffix_among(inner, SOURCE_SUFFIXES) || ends_with(inner, ".tar") ? SOURCE_KIND_CONTAINER : SOURCE_KIND_OTHER;
 }
 
 /* The first bytes, zeros behind the end and where there is nothing to read. */
@@ -119,7 +119,7 @@ size_t source_suffix_bytes(const char *name)
 		return 0;
 	memcpy(inner, name, bytes);
 	inner[bytes] = '\0';
-	const char *suffix = suffix_among(inner, MEASURED);
+	const char *suffix = suffix_among(inner, SOURCE_SUFFIXES);
 	return suffix ? strlen(suffix) + packed : 0;
 }
 

@@ -15,6 +15,8 @@ enum source_kind {
 };
 enum { SOURCE_STEM_BYTES = 512 };
 
+extern const char *const SOURCE_SUFFIXES[]; /* of measured files, as they are written; NULL ends them */
+
 /* By the path's last part alone (for files found in folders); hidden files are SOURCE_KIND_OTHER. */
 enum source_kind source_kind_by_name(const char *path);
 
@@ -27,10 +29,10 @@ enum source_kind source_kind_by_content(const char *path);
 /* Whether a file begins like one of the RGL database, whatever it is called. */
 bool source_is_tensor_file(const char *path);
 
-/* The material's name: the last part of the path without its suffix (two for x.binary.gz); overlong ones are cut, and are illegal still. */
+/* The material's name: the last part of the path less its suffix (two for x.binary.gz); cut where overlong, and then illegal. */
 void source_stem(const char *path, char name[SOURCE_STEM_BYTES]);
 
-/* How many bytes of a name are a measured file's suffix: ".binary", ".bsdf", ".binary.gz" and so on, in either case; 0: it has none. */
+/* Bytes of a name that are a measured file's suffix: ".binary", ".bsdf", ".binary.gz" and so on, in either case; 0: none. */
 size_t source_suffix_bytes(const char *name);
 
 #endif

@@ -130,7 +130,5 @@ bp_status source_item_read(const struct source_item *item, struct source_cursor 
 		}
 	}
 	status = container_seek(cursor->container, item->ordinal, error);
-	if (status != BP_OK)
-		return status;
-	return lattice_read(container_read, cursor->container, reading, out, error);
+	return status ? status : lattice_read(container_read, cursor->container, reading, out, error);
 }

@@ -11,8 +11,8 @@ enum { SPELLING_BYTES_MAX = 255 };
 /*
  * The nearest spelling: fewest letters inserted, removed, replaced or exchanged with their
  * neighbour; ASCII case counts nothing. A name that begins with the wanted one (three letters or more) is
- * near too, but less so; the same text in another Unicode form is nearest. Start with the name that was not found, offer every name
- * there is (the first of equals wins), then ask.
+ * near too, but less so; the same text in another Unicode form is nearest. Start with the name that was not found, offer every
+ * name there is (the first of equals wins), then ask.
  */
 struct name_guess {
 	const char *wanted; /* the caller's, for as long as the guess lives */

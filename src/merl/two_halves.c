@@ -1,7 +1,6 @@
 #include "two_halves.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "reciprocity.h"

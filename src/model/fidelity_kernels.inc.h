@@ -1,4 +1,4 @@
-/* fidelity_kernels.inc.h: all loops of fidelity_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+/* fidelity_kernels.inc.h: the loops of fidelity_kernels.h, for the including file's target. KERNEL(name) must be defined. */
 #include "fidelity_kernels.h"
 #include "model/math/vector.h"
 

@@ -11,9 +11,8 @@
 bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error)
 {
 	struct model *model;
-	bp_status status;
 
-	status = lattice_dims_check(lattice->dims, error);
+	bp_status status = lattice_dims_check(lattice->dims, error);
 	if (status)
 		return status;
 	if (!lattice->valid_count)

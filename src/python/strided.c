@@ -19,7 +19,7 @@ static f32x4 load(const float *from)
 
 static void store(float *to, f32x4 from) { memcpy(to, &from, sizeof from); }
 
-/* Rows of x y z, four at a time: compilers turn these shuffles into two or three instructions each, a plain loop into many more. */
+/* Rows of x y z, four at a time: these shuffles become two or three instructions each, a plain loop many more. */
 static void rows_gather(const float *from, size_t count, struct vectors *to)
 {
 	size_t n = 0;

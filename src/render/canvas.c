@@ -1,10 +1,8 @@
 #include "canvas.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base64.h"
 #include "error.h"

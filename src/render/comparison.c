@@ -35,19 +35,24 @@ void comparison_plans_free(struct comparison_plans *plans)
 	*plans = (struct comparison_plans){.lightings = plans->lightings, .size = plans->size};
 }
 
+bp_status comparison_dims_check(struct lattice_dims a, struct lattice_dims b, bp_error *error)
+{
+	return lattice_dims_equal(a, b) ? BP_OK
+	                                : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+	                                            "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u",
+	                                            a.theta_h, a.theta_d, a.phi_d, b.theta_h, b.theta_d, b.phi_d);
+}
+
 bp_status comparison_measure(struct comparison_plans *plans, const struct lattice *truth, const struct expansion *table,
                              struct comparison *out, struct picture *pictures, bp_error *error)
 {
-	struct lattice_dims a = truth->dims, b = table->dims;
 	struct lookup_table measured = {0}, decoded = {0};
 	struct comparison result;
 	bp_status status;
 
 	memset(&result, 0, sizeof result); /* padding too: rows travel between processes as bytes */
-	if (!lattice_dims_equal(a, b))
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d,
-		                 a.phi_d, b.theta_h, b.theta_d, b.phi_d);
+	if (comparison_dims_check(truth->dims, table->dims, error))
+		return BP_ERROR_BAD_INPUT;
 	if (!truth->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the reference has no valid cell");
 	if ((status = comparison_plans_make(plans, truth->dims, error)) != BP_OK)

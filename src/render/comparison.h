@@ -35,6 +35,9 @@ struct comparison_plans {
 bp_status comparison_plans_make(struct comparison_plans *plans, struct lattice_dims dims, bp_error *error);
 void comparison_plans_free(struct comparison_plans *plans); /* a zeroed struct is allowed */
 
+/* BP_ERROR_BAD_INPUT where the extents differ. */
+bp_status comparison_dims_check(struct lattice_dims measured, struct lattice_dims decoded, bp_error *error);
+
 /*
  * Fills *out. With pictures not NULL, pictures[lighting] becomes picture_compare of that lighting; the caller
  * frees them, also after an error. BP_ERROR_BAD_INPUT: the extents differ, or no cell is valid.

@@ -1,6 +1,5 @@
 #include "sphere.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +7,7 @@
 #include "error.h"
 #include "memory.h"
 
-static const double COVERED_BELOW = 0.99, COSINE_ABOVE = 1e-3;
+static const double COVERED_BELOW = 0.99;
 enum { BAND_PLACES = 6000000 };
 
 /* Consecutive pixels under one light; their places follow in the same order. */
@@ -40,8 +39,7 @@ static struct place pixel_place(const struct angle_tables *angles, struct lattic
 	return place_make(angles, dims, cos_h, cos_d, n[1] * l[0] - n[0] * l[1], (n[2] - cosine) * cos_d, cosine * weight);
 }
 
-/* The normal of a pixel; false when it is not covered. */
-static bool pixel_normal(uint32_t size, uint32_t x, uint32_t y, double normal[3])
+bool sphere_normal(uint32_t size, uint32_t x, uint32_t y, double normal[3])
 {
 	double u = (x + 0.5) / size * 2 - 1, v = 1 - (y + 0.5) / size * 2, square = u * u + v * v;
 	if (square >= COVERED_BELOW)
@@ -54,8 +52,7 @@ static bool pixel_normal(uint32_t size, uint32_t x, uint32_t y, double normal[3]
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* Direction and irradiance of a light at the point of the sphere whose normal is n. */
-static double light_reach(const struct light *light, const double n[3], double to[3])
+double sphere_light(const struct light *light, const double n[3], double to[3])
 {
 	if (!light->is_point) {
 		memcpy(to, light->at, sizeof light->at);
@@ -91,9 +88,9 @@ static bool plan_row(struct sphere_plan *plan, const struct angle_tables *angles
 	bool open = false;
 	for (uint32_t x = 0; x < plan->size; x++) {
 		double normal[3], to[3];
-		bool lit = pixel_normal(plan->size, x, y, normal);
-		double weight = lit ? light_reach(light, normal, to) : 0, cosine = lit ? dot(normal, to) : 0;
-		if (cosine <= COSINE_ABOVE) {
+		bool lit = sphere_normal(plan->size, x, y, normal);
+		double weight = lit ? sphere_light(light, normal, to) : 0, cosine = lit ? dot(normal, to) : 0;
+		if (cosine <= SPHERE_COSINE_ABOVE) {
 			open = false;
 			continue;
 		}
@@ -177,19 +174,18 @@ void sphere_plan_render(const struct sphere_plan *plan, const struct lookup_tabl
 	}
 }
 
-bp_status sphere_render(enum lighting lighting, const struct lookup_table *const *tables, int count,
-                        struct sphere_image *const *images, bp_error *error)
+bp_status sphere_render(enum lighting lighting, const struct lookup_table *table, struct sphere_image *image, bp_error *error)
 {
 	struct light lights[LIGHTS_MAX];
-	uint32_t size = images[0]->size, light_count = (uint32_t)lights_make(lighting, lights);
+	uint32_t size = image->size, light_count = (uint32_t)lights_make(lighting, lights);
 	uint32_t rows = BAND_PLACES / (size * light_count);
 	rows = rows < 1 ? 1 : rows;
 	for (uint32_t y = 0; y < size; y += rows) {
 		struct sphere_plan *plan;
-		bp_status status = sphere_plan_make(lighting, size, y, rows < size - y ? rows : size - y, tables[0]->dims, &plan, error);
+		bp_status status = sphere_plan_make(lighting, size, y, rows < size - y ? rows : size - y, table->dims, &plan, error);
 		if (status != BP_OK)
 			return status;
-		sphere_plan_render(plan, tables, count, images);
+		sphere_plan_render(plan, &table, 1, &image);
 		sphere_plan_free(plan);
 	}
 	return BP_OK;
@@ -210,7 +206,7 @@ bp_status sphere_image_alloc(uint32_t size, struct sphere_image *out, bp_error *
 	double normal[3];
 	for (uint32_t y = 0; y < size; y++)
 		for (uint32_t x = 0; x < size; x++)
-			image.covered_count += image.covered[x + (size_t)size * y] = pixel_normal(size, x, y, normal);
+			image.covered_count += image.covered[x + (size_t)size * y] = sphere_normal(size, x, y, normal);
 	*out = image;
 	return BP_OK;
 }

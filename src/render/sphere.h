@@ -26,6 +26,13 @@ struct sphere_image {
 	size_t covered_count;
 };
 
+/* The normal that a pixel sees; false when it is not covered. */
+bool sphere_normal(uint32_t size, uint32_t x, uint32_t y, double normal[3]);
+/* The direction to a light from the point of the sphere whose normal is n; returns its irradiance there at normal incidence. */
+double sphere_light(const struct light *light, const double n[3], double to[3]);
+#define SPHERE_COSINE_ABOVE 1e-3 /* lights that come in lower than this count nothing */
+
+/* All 0, in the unit 1, with the pixels marked that are covered. */
 bp_status sphere_image_alloc(uint32_t size, struct sphere_image *out, bp_error *error);
 void sphere_image_free(struct sphere_image *image);
 
@@ -48,7 +55,6 @@ void sphere_plan_render(const struct sphere_plan *plan, const struct lookup_tabl
                         struct sphere_image *const *images);
 
 /* A whole image without a plan of one's own: works through bands of rows in bounded memory (about 100 MB). */
-bp_status sphere_render(enum lighting lighting, const struct lookup_table *const *tables, int count,
-                        struct sphere_image *const *images, bp_error *error);
+bp_status sphere_render(enum lighting lighting, const struct lookup_table *table, struct sphere_image *image, bp_error *error);
 
 #endif

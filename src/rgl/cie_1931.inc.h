@@ -1,5 +1,5 @@
-/* From 380 to 780 nm by 5: x, y and z of the CIE 1931 standard observer (2 degrees), and the relative power of the standard illuminant D65
- * (CIE 15:2004, tables T.4 and T.1). */
+/* From 380 to 780 nm by 5: x, y and z of the CIE 1931 standard observer (2 degrees), and the relative power of the standard
+ * illuminant D65 (CIE 15:2004, tables T.4 and T.1). */
 {0.001368, 3.9e-05, 0.006450001, 49.9755}, {0.002236, 6.4e-05, 0.01054999, 52.3118}, {0.004243, 0.00012, 0.02005001, 54.6482},
 	{0.00765, 0.000217, 0.03621, 68.7015}, {0.01431, 0.000396, 0.06785001, 82.7549}, {0.02319, 0.00064, 0.1102, 87.1204},
 	{0.04351, 0.00121, 0.2074, 91.486}, {0.07763, 0.00218, 0.3713, 92.4589}, {0.13438, 0.004, 0.6456, 93.4318},

@@ -14,8 +14,8 @@
 #include <stddef.h>
 
 /*
- * weights[3 n + c] of n ascending wavelengths (nm): channel c = sum of weights[3 n + c] r[n]. The three sums of all weights are 1. Channels of
- * saturated colours may come out negative.
+ * weights[3 n + c] of n ascending wavelengths (nm): channel c = sum of weights[3 n + c] r[n]. The three sums of all weights are
+ * 1. Channels of saturated colours may come out negative.
  */
 void colour_weights(const double *wavelengths, size_t count, double *weights);
 

@@ -1,4 +1,4 @@
-/* grid.h: functions over the unit interval or square that are given at equally spaced nodes, both ends among them, and linear between. */
+/* grid.h: functions over the unit interval or square, given at equally spaced nodes, both ends among them, linear between. */
 #ifndef RGL_GRID_H
 #define RGL_GRID_H
 

@@ -215,7 +215,7 @@ static bp_status vndf_read(const uint8_t *file, const struct tensor_field *field
 	return status;
 }
 
-/* One channel's or wavelength's samples at one angle, by weight into red, green and blue. `row`, of SIDE_MAX doubles, is scratch memory. */
+/* One channel's or wavelength's samples at one angle, by weight into red, green and blue. row[SIDE_MAX]: scratch. */
 static bp_status plane_add(const uint8_t *file, const struct tensor_field *field, uint64_t first, const double weights[3],
                            const struct rgl_material *material, double *sums, double *row, bp_error *error)
 {

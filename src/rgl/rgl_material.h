@@ -20,8 +20,8 @@
  * all bilinear, theta_i linear; a channel below 0 counts as 0. Sources: Dupuy and Jakob, An Adaptive Parameterization for
  * Efficient Material Acquisition and Rendering (2018); rgl-epfl/brdf-loader.
  *
- * `valid`: in some published files the bits are the other way round. Most samples of a file are measured, so the rarer value is the
- * one that says "not measured"; and since such samples may hold values that were extrapolated well, only those that
+ * `valid`: in some published files the bits are the other way round. Most samples of a file are measured, so the rarer value is
+ * the one that says "not measured"; and since such samples may hold values that were extrapolated well, only those that
  * are 0 in all channels are without data.
  */
 #ifndef RGL_RGL_MATERIAL_H
@@ -51,7 +51,7 @@ struct rgl_material {
 	double first, last;   /* nm, where there are wavelengths */
 };
 
-/* BP_ERROR_BAD_INPUT, with the reason, unless it is an isotropic material's table as far as the shapes say. For files that are refused before they are read. */
+/* By the shapes alone, before more is read. BP_ERROR_BAD_INPUT, with the reason, where it is no isotropic material's table. */
 bp_status rgl_table_check(const struct tensor_table *table, bp_error *error);
 
 /*
@@ -67,13 +67,13 @@ struct rgl_value {
 };
 
 /*
- * f for light from (theta_i, phi_i), radians, phi_i from -pi to pi, which leaves at cos_o > 0; the half vector is at theta_m, azimuth 0. Beyond the
- * first and last theta_i the nearest one's values stay. Where sigma is 0, nothing is known: data 0.
+ * f for light from (theta_i, phi_i), radians, phi_i from -pi to pi, which leaves at cos_o > 0; the half vector is at theta_m,
+ * azimuth 0. Beyond the first and last theta_i the nearest one's values stay. Where sigma is 0, nothing is known: data 0.
  */
 void rgl_evaluate(const struct rgl_material *material, double theta_i, double phi_i, double theta_m, double cos_o,
                   struct rgl_value *out);
 
-/* Samples along theta_m, on their own grid, between two half angles at incidence theta_i: above 1 their lobe is narrower than that. */
+/* Samples along theta_m, on their own grid, between two half angles at theta_i: above 1 their lobe is narrower than that. */
 double rgl_samples_between(const struct rgl_material *material, size_t angle, double theta_m0, double theta_m1);
 
 #endif

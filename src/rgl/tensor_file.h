@@ -66,8 +66,9 @@ const char *tensor_type_name(enum tensor_type type); /* "uint8" ... "float64" */
 
 /*
  * Parses the table of fields from the file's first `count` bytes, which must hold all of it; file_bytes is the whole file's
- * size, within which every array must lie (UINT64_MAX: not known yet). BP_ERROR_BAD_INPUT, naming the field and the offset, for what is cut off,
- * a version other than 1, types, ranks and names that are not known or too long, two fields of one name, and arrays that do not fit or overlap.
+ * size, within which every array must lie (UINT64_MAX: not known yet). BP_ERROR_BAD_INPUT, naming the field and the offset, for
+ * what is cut off, a version other than 1, types, ranks and names that are not known or too long, two fields of one name, and
+ * arrays that do not fit or overlap.
  */
 bp_status tensor_table_parse(const uint8_t *bytes, size_t count, uint64_t file_bytes, struct tensor_table *out, bp_error *error);
 
@@ -78,8 +79,8 @@ const struct tensor_field *tensor_field_find(const struct tensor_table *table, c
 bool tensor_field_has_shape(const struct tensor_field *field, uint32_t rank, const uint64_t *shape);
 
 /*
- * Elements `first` to first + count - 1 of a field of floats (types 9 to 11), as double. `file` is the whole file, whose table was
- * parsed with its size. False where the type is none of them, or the elements are not there.
+ * Elements `first` to first + count - 1 of a field of floats (types 9 to 11), as double. `file` is the whole file, whose table
+ * was parsed with its size. False where the type is none of them, or the elements are not there.
  */
 bool tensor_floats(const uint8_t *file, const struct tensor_field *field, uint64_t first, size_t count, double *out);
 

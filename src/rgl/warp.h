@@ -1,14 +1,14 @@
 /*
  * warp.h: densities over the unit square, one to each angle of incidence, and the square stretched by them.
  *
- * A slice is a grid of height x width values at the nodes of the square, bilinear between them; x = u_m runs along a row, y = v_m from row to row.
- * A point (x, y) belongs to the point (s, t):
+ * A slice is a grid of height x width values at the nodes of the square, bilinear between them; x = u_m runs along a row, y = v_m
+ * from row to row. A point (x, y) belongs to the point (s, t):
  *
  *     t = mass of the rows below y, of the slice's whole: the marginal distribution function, quadratic in y between two rows
  *     s = mass of the row at y before x, of that row's whole: the conditional one, quadratic in x between two nodes
  *
  * so that (s, t) is uniform where (x, y) follows the density. Between two angles the densities and their integrals are
- * interpolated linearly. (Dupuy and Jakob 2018, section 4: the parameterisation by which measurements follow the visible normals.)
+ * interpolated linearly. (Dupuy and Jakob 2018, section 4: measurements follow the visible normals.)
  */
 #ifndef RGL_WARP_H
 #define RGL_WARP_H
@@ -24,8 +24,8 @@ struct warp {
 };
 
 /*
- * No values yet. across = width - 1, up = height - 1: densities over the unit square; 1 and 1: over a grid of spacing 1. False: no memory.
- * warp_free in any case.
+ * No values yet. across = width - 1, up = height - 1: densities over the unit square; 1 and 1: over a grid of spacing 1. False:
+ * no memory. warp_free in any case.
  */
 int warp_alloc(struct warp *warp, size_t slices, size_t height, size_t width, double across, double up);
 void warp_free(struct warp *warp); /* a zeroed struct is allowed */
@@ -39,7 +39,7 @@ int warp_fill(struct warp *warp, size_t slice, const double *values, size_t *at)
 /* Rounds all integrals to floats: as the database's readers hold them. */
 void warp_round(struct warp *warp);
 
-/* Where a point is between two angles: that of the slice, and of the next one with the weight `next`, 0 to 1 (0: there need be no next one). */
+/* Where a point is between two angles: of the slice, and of the next one with the weight `next`, 0 to 1 (0: maybe none). */
 struct warp_place {
 	size_t slice;
 	double next;

@@ -96,29 +96,22 @@ static void layers_member(struct json *json, const struct record_head *head)
 	json_close(json);
 }
 
-const char *origin_text(enum origin_kind kind)
-{
-	switch (kind) {
-	case ORIGIN_RGL_RGB: return "RGL tensor file, red, green and blue";
-	case ORIGIN_RGL_SPECTRA: return "RGL tensor file, spectra";
-	case ORIGIN_TWO_HALVES: return "MERL-like table with phi_d from 0 to 2 pi, the mean of its halves";
-	default: return NULL;
-	}
-}
+static const struct {
+	const char *word, *text;
+} ORIGINS[] = {
+	[ORIGIN_RGL_RGB] = {"rgl-rgb", "RGL tensor file, red, green and blue"},
+	[ORIGIN_RGL_SPECTRA] = {"rgl-spectra", "RGL tensor file, spectra"},
+	[ORIGIN_TWO_HALVES] = {"merl-two-halves", "MERL-like table with phi_d from 0 to 2 pi, the mean of its halves"},
+};
 
-static const char *origin_word(enum origin_kind kind)
-{
-	static const char *const WORDS[] = {
-		[ORIGIN_RGL_RGB] = "rgl-rgb", [ORIGIN_RGL_SPECTRA] = "rgl-spectra", [ORIGIN_TWO_HALVES] = "merl-two-halves"};
-	return origin_text(kind) ? WORDS[kind] : NULL;
-}
+const char *origin_text(enum origin_kind kind) { return ORIGINS[kind].text; }
 
 /* What the source's object says beyond a MERL table's. */
 static void origin_members(struct json *json, const struct origin *origin)
 {
 	if (!origin_text(origin->kind))
 		return;
-	json_string(json, "kind", origin_word(origin->kind));
+	json_string(json, "kind", ORIGINS[origin->kind].word);
 	if (origin->kind == ORIGIN_RGL_SPECTRA) {
 		json_integer(json, "wavelengths", origin->wavelengths);
 		json_number(json, "first_nm", origin->first_nm);

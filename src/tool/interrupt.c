@@ -34,7 +34,8 @@ bp_status interrupt_install(int *wake_fd, bp_error *error)
 		if (sigaction(numbers[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
 			sigaction(numbers[i], &action, NULL);
 	}
-	*wake_fd = wake_pipe[0];
+	if (wake_fd)
+		*wake_fd = wake_pipe[0];
 	return BP_OK;
 }
 

@@ -8,7 +8,7 @@
 
 #include "brdfpack.h"
 
-/* From now on SIGINT, SIGTERM and SIGHUP are noted. *wake_fd becomes readable with the first. */
+/* From now on SIGINT, SIGTERM and SIGHUP are noted. *wake_fd becomes readable with the first; NULL is allowed. */
 bp_status interrupt_install(int *wake_fd, bp_error *error);
 
 /* 0, or the signal that came. The tool then exits with 128 + this. */

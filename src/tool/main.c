@@ -15,7 +15,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 /* A new command is one cmd_NAME.c and one line here, in the order `help` shows them. */
 #define COMMANDS(X) \

@@ -2,8 +2,8 @@
  * options.h: reading a command line the same way in every command: getopt_long, own messages,
  * strict numbers.
  *
- *     const struct option_rule rules[] = {{"output", 'o', option_text, .to = &output}, {"quiet", 'q', option_flag, .to = &quiet}, {0}};
- *     int code = options_read(self, argc, argv, rules);
+ *     const struct option_rule rules[] = {{"output", 'o', option_text, .to = &output}, {"quiet", 'q', option_flag, .to = &quiet},
+ *     {0}}; int code = options_read(self, argc, argv, rules);
  *     if (code != OPTIONS_END)
  *             return code;
  */
@@ -42,8 +42,8 @@ option_take_fn option_light;   /* enum lighting */
 option_take_fn option_profile; /* enum profile */
 
 /*
- * Reads all options. OPTIONS_END: operands start at argv[optind]. Else an exit code: EXIT_OK after --help, EXIT_USAGE after a message.
- * A '-' for a file is refused: archives and measured files are read and written where one can seek.
+ * Reads all options. OPTIONS_END: operands start at argv[optind]. Else an exit code: EXIT_OK after --help, EXIT_USAGE after a
+ * message. A '-' for a file is refused: archives and measured files are read and written where one can seek.
  */
 enum { OPTIONS_END = -1 };
 int options_read(const struct command *command, int argc, char **argv, const struct option_rule *rules);

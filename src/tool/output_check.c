@@ -1,6 +1,5 @@
 #include "output_check.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>

@@ -23,7 +23,7 @@ struct scene_words {
 	size_t count;
 };
 
-/* Adds the words of a regular file, those that could be a material's name or a measured file's path. Errors: BP_ERROR_IO, BP_ERROR_MEMORY. */
+/* Adds a regular file's words that could be a material's name or a measured file's path. Errors: BP_ERROR_IO, BP_ERROR_MEMORY. */
 bp_status scene_words_add(struct scene_words *words, const char *path, bp_error *error);
 
 /* Sorts them by their bytes and removes doubles. */

@@ -8,7 +8,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 void selection_missing_report(const struct selection *selection, const char *written)
 {

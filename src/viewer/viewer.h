@@ -52,10 +52,10 @@ VIEWER_CALL uint32_t viewer_material_bytes(const struct viewer_material *materia
 /* f(wi, wo) of `count` pairs: pairs[6 count] in, rgb[3 count] out, in 1/sr. */
 VIEWER_CALL void viewer_material_evaluate(const struct viewer_material *material, uint32_t count, const float *pairs, float *rgb);
 
-/* The decoded table of `layers` layers (0: all): H D P values of R, then of G, of B, in 1/sr as double; freed with viewer_free. */
+/* The decoded table of `layers` layers (0: all): H D P values of R, of G, of B, in 1/sr as double; freed with viewer_free. */
 VIEWER_CALL double *viewer_table(const struct bp_archive *archive, double index, uint32_t layers, uint32_t dims[3]);
 
-/* Lights of `brdfpack render` (0 key, 1 env, 2 point) as floats x, y, z, weight, 1 for a point: 5 each, in *lights. Their number. */
+/* Lights of `brdfpack render` (0 key, 1 env, 2 point): x, y, z, weight, 1 for a point, 5 floats each, in *lights. How many. */
 VIEWER_CALL uint32_t viewer_lights(uint32_t lighting, float *lights);
 
 VIEWER_CALL void *viewer_alloc(uint32_t bytes);

@@ -17,9 +17,9 @@ bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum pap
                       uint32_t count, bp_error *error);
 
 /*
- * A copy with steps 2^(shift/256) times as large (a slice's; a pair's, which serves many slices, less), levels to match; those that
- * become 0 go, so the coefficients that gain least are the first to. A field that has none left is 1; at the largest shift all are. *out is
- * freed by sparse_fields_free.
+ * A copy with steps 2^(shift/256) times as large (a slice's; a pair's, which serves many slices, less), levels to match; those
+ * that become 0 go, so the coefficients that gain least are the first to. A field that has none left is 1; at the largest shift
+ * all are. *out is freed by sparse_fields_free.
  */
 enum { SPARSE_SHIFT_MAX = 20 * 256 };
 bp_status fields_coarsen(enum paper_field kind, const struct sparse_field *fields, uint32_t count, uint32_t shift,

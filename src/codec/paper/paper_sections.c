@@ -1,7 +1,6 @@
 /* paper_sections.c: the paper's model as sections (FORMAT.md, "Profile 1"): four of every channel. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "model/paper/paper.h"
@@ -107,7 +106,7 @@ struct bracket {
 
 enum { SHIFT_GRAIN = 16, SHIFT_MOST = SPARSE_SHIFT_MAX / SHIFT_GRAIN };
 
-/* Where bytes would meet the budget if they fell evenly in between; a little coarser, so that the bracket closes from both sides. */
+/* Where bytes would meet the budget if they fell evenly between; a little coarser, so that the bracket closes from both sides. */
 static uint32_t bracket_next(const struct bracket *b, uint64_t budget)
 {
 	const double share = (double)(b->above_bytes - budget) / (double)(b->above_bytes - b->below_bytes);

@@ -2,7 +2,7 @@
  * bands.h: the order in which the coefficients of one harmonic are coded.
  *
  * The plane of H x D wavelet coefficients falls into bands (FORMAT.md, "Bands"), the coarse one first, and a band into blocks of
- * 8 x 8 (fewer at its end). Blocks have numbers; around each band's there is one block of padding, so that neighbours need no test.
+ * 8 x 8 (fewer at its end). Blocks have numbers; around each band's is one block of padding, so that neighbours need no test.
  */
 #ifndef CODEC_SPECTRAL_BANDS_H
 #define CODEC_SPECTRAL_BANDS_H

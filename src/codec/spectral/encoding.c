@@ -1,7 +1,6 @@
 #include "encoding.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "error.h"
 #include "model/math/fast_math.h"
@@ -57,7 +56,7 @@ static bool worth_going_on(const struct encoding *e, struct attempt *a)
 	return a->wanted >= a->search->low * a->room && a->wanted <= a->search->high * a->room;
 }
 
-/* Units from *unit on until layer l is full; `bytes` of the record come before it. False: the attempt was given up, or the watch ended it. */
+/* Units from *unit on until layer l is full; `bytes` of the record come before it. False: given up, or ended by the watch. */
 static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, struct mixed_coder *coder, uint64_t bytes,
                          uint32_t *unit, uint64_t *largest_unit, bp_error *error)
 {
@@ -70,7 +69,7 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 	range_encoder_start(encoder, out);
 	kept = *encoder;
 	size_t kept_count = out->count;
-	uint64_t now = bytes + range_encoder_bytes(encoder, 0);
+	uint64_t now = bytes + range_encoder_bytes(encoder);
 	e->end[l] = *unit;
 	while (*unit < units && !out->failed &&
 	       (last ? now <= 3 * (uint64_t)e->limit[l] : now + 2 * *largest_unit + 16 <= e->limit[l])) {
@@ -80,7 +79,7 @@ static bool layer_encode(struct encoding *e, struct attempt *a, uint32_t l, stru
 		if (a->status)
 			return false;
 		planes_encode_unit(e->planes, coder, (*unit)++);
-		now = bytes + range_encoder_bytes(encoder, 0);
+		now = bytes + range_encoder_bytes(encoder);
 		*largest_unit = now - before > *largest_unit ? now - before : *largest_unit;
 		if (!last || now <= e->limit[l]) {
 			kept = *encoder;

@@ -8,8 +8,8 @@
 #include "planes_contexts.h"
 
 /*
- * Blocks that a decoder's pool begins with: enough for a preview, and small enough to stay with the process from material to material;
- * larger ones go back to the system. An encoder's has room for all there can be.
+ * Blocks that a decoder's pool begins with: enough for a preview, and small enough to stay with the process from material to
+ * material; larger ones go back to the system. An encoder's has room for all there can be.
  */
 enum { POOL_START = 2048, POOL_GROWTH = 8 };
 
@@ -25,8 +25,8 @@ bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **o
 	const size_t bytes = 3 * blocks * (encoder ? 10 : 5) + 3 * harmonics * sizeof(uint32_t);
 	unsigned char *at = p->block = calloc(bytes, 1);
 	/*
-	 * Pages that are never touched cost nothing, and those that are come in huge ones. Not calloc: a worker's memory has been in use
-	 * before, and 100 MB would be zeroed for every material. Who takes a place zeroes it.
+	 * Pages that are never touched cost nothing, and those that are come in huge ones. Not calloc: a worker's memory has been in
+	 * use before, and 100 MB would be zeroed for every material. Who takes a place zeroes it.
 	 */
 	p->pool_room = (uint32_t)(encoder || slots < POOL_START ? slots : POOL_START);
 	p->pool = memory_alloc(p->pool_room * sizeof *p->pool);

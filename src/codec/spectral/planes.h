@@ -14,8 +14,8 @@
 enum { BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
 
 /*
- * What is known of the levels of one block, row by row; 0 behind the band's end. What stands for a neighbour's contexts comes first: it
- * is read far more often than the rest.
+ * What is known of the levels of one block, row by row; 0 behind the band's end. What stands for a neighbour's contexts comes
+ * first: it is read far more often than the rest.
  */
 struct plane_block {
 	uint16_t near[BLOCK_CELLS];  /* known / 2^p, p being the plane last coded here; at most NEAR_MOST */
@@ -37,8 +37,8 @@ struct candidate {
 };
 
 /*
- * Most blocks never hold a level. Those that do have a place in a pool, in the order in which they were met, so that what is worked on
- * lies close together whatever the lattice's size.
+ * Most blocks never hold a level. Those that do have a place in a pool, in the order in which they were met, so that what is
+ * worked on lies close together whatever the lattice's size.
  */
 struct planes {
 	struct lattice_dims dims;
@@ -70,8 +70,8 @@ void planes_free(struct planes *planes); /* NULL is allowed */
 void planes_start(struct planes *planes, uint32_t count);
 
 /*
- * Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign. The coefficients must be the same every time.
- * planes_settle must follow.
+ * Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign. The coefficients must be the same every
+ * time. planes_settle must follow.
  */
 bp_status planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding, bp_error *error);
 

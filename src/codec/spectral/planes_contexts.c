@@ -1,6 +1,6 @@
 #include "planes_contexts.h"
 
-/* Where nothing around is known to differ from 0, a cell, row, block or band starts at a probability of 1/50 as if it had seen six bits. */
+/* With nothing around it that is known to differ from 0, a cell, row, block or band starts at 1/50, as if of six bits. */
 enum { QUIET_START = 83886 << 10 | 6 };
 
 void plane_contexts_reset(struct plane_contexts *c)

@@ -1,8 +1,8 @@
 /*
- * planes_contexts.h: what the coder of bit planes has learnt so far (FORMAT.md, "Bit planes", which has the meaning of the indices).
+ * planes_contexts.h: what the coder of bit planes has learnt so far (FORMAT.md, "Bit planes", has the meaning of indices).
  *
- * Most bits have a pair of contexts, signs a mix of four, and a quiet bit, one with nothing around it that is known to differ from 0,
- * a single one.
+ * Most bits have a pair of contexts, signs a mix of four, and a quiet bit, one with nothing around it that is known to differ
+ * from 0, a single one.
  */
 #ifndef CODEC_SPECTRAL_PLANES_CONTEXTS_H
 #define CODEC_SPECTRAL_PLANES_CONTEXTS_H

@@ -61,10 +61,9 @@ static bp_status candidates_find(struct planes *p, float *const coefficient[3], 
 						f * field + 2 * p->bands.blocks + band->block_at + y / BLOCK_EDGE * band->block_stride + x / BLOCK_EDGE;
 					const uint32_t place = y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
 					for (uint32_t lane = 0; lane < lanes && !status; lane += LANES)
-						if (lanes - lane < LANES)
-							status = lanes_look(p, slot, place, row + lane, lane, lanes - lane, least, error);
-						else if (any_above(row + lane, bits_of_float(least)))
-							status = lanes_look(p, slot, place, row + lane, lane, LANES, least, error);
+						if (lanes - lane < LANES || any_above(row + lane, bits_of_float(least)))
+							status = lanes_look(p, slot, place, row + lane, lane, lanes - lane < LANES ? lanes - lane : LANES,
+							                    least, error);
 				}
 		}
 	return status;

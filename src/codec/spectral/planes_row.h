@@ -1,6 +1,6 @@
 /*
- * planes_row.h: what stands around the cells of one row of a block, eight lanes at once: of the contexts of FORMAT.md, "Bit planes",
- * everything but for what changes in the row itself.
+ * planes_row.h: what stands around the cells of one row of a block, eight lanes at once: of the contexts of FORMAT.md, "Bit
+ * planes", everything but for what changes in the row itself.
  */
 #ifndef CODEC_SPECTRAL_PLANES_ROW_H
 #define CODEC_SPECTRAL_PLANES_ROW_H
@@ -16,8 +16,7 @@
 static INLINE uint32_t tier(uint32_t near) { return (uint32_t)(near != 0) + (uint32_t)(near >= 6); }
 
 /*
- * One row of a block in units of the plane's value. Comparisons are of signed numbers, which every processor has; no single value needs
- * the sign.
+ * One row of a block in units of the plane's value. Comparisons are signed, as every processor has them; no value needs the sign.
  */
 typedef uint16_t cells8 __attribute__((vector_size(2 * BLOCK_EDGE)));
 typedef int16_t signed8 __attribute__((vector_size(2 * BLOCK_EDGE)));
@@ -34,8 +33,8 @@ static INLINE cells8 cells_load(const uint16_t *from)
 
 /*
  * The block at hand with a ring of its neighbours' cells, cell (y, x) at [y + 1][x + 1], and the blocks at the same place in
- * other harmonics and fields. Lanes behind the band's end are 0. All in units of this plane's value: what was last coded in the plane
- * above counts twice.
+ * other harmonics and fields. Lanes behind the band's end are 0. All in units of this plane's value: what was last coded in the
+ * plane above counts twice.
  */
 enum { VIEW_STRIDE = 16 };
 struct block_view {
@@ -57,7 +56,7 @@ struct row_view {
 	uint16_t tiers[BLOCK_EDGE];  /* of the second: all but the left neighbour's */
 };
 
-/* Returns 0 when nothing around any of the row's cells, nor the cells themselves, are known to differ from 0; then *out is not set. */
+/* 0: none of the row's cells, and nothing around them, is known to differ from 0; then *out is not set. */
 static INLINE int row_look(const struct block_view *v, uint32_t y, uint32_t width, uint32_t chroma, struct row_view *out)
 {
 	const uint16_t *k = &v->near[y + 1][1];

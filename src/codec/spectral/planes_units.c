@@ -53,8 +53,8 @@ static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_
 }
 
 /*
- * The flags of a harmonic with no active band, in it or near it, up to the first that is 1: its band, or their count. Most units hold
- * nothing else.
+ * The flags of a harmonic with no active band, in it or near it, up to the first that is 1: its band, or their count. Most units
+ * hold nothing else.
  */
 static INLINE uint32_t code_quiet_bands(const struct place *u, int decode, const uint8_t *top)
 {

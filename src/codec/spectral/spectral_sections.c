@@ -32,8 +32,8 @@ static const uint32_t PREVIEWS[] = {4096, 16384, 65536, 262144, 1048576};
 enum { PREVIEW_COUNT = sizeof PREVIEWS / sizeof *PREVIEWS };
 
 /*
- * What the model is says how its fields are written. All three are in use: rows are whole where an error was asked for or nothing can be
- * seen, cut at the horizon where a table is too small to be graded; all else is graded.
+ * What the model is says how its fields are written. All three are in use: rows are whole where an error was asked for or nothing
+ * can be seen, cut at the horizon where a table is too small to be graded; all else is graded.
  */
 static uint16_t fields_version(const struct spectral_model *model)
 {
@@ -106,7 +106,6 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 	struct encoding e = {.model = model->spectral, .watch = request->options->watch};
 	const uint32_t budget = request->record_bytes_max;
 	struct byte_buffer weights = {0};
-	uint64_t least;
 	bp_status status;
 
 	if (!e.model->coefficient[0])
@@ -118,7 +117,7 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 	weights_encode(&e.model->weights, &weights);
 	e.head_bytes =
 		record_head_size(request->name_bytes, e.layers, e.layers + 1) + fields_bytes(fields_version(e.model)) + weights.count;
-	least = e.head_bytes + e.layers * 8;
+	uint64_t least = e.head_bytes + e.layers * 8;
 	if (weights.failed)
 		status = error_memory(error, SPECTRAL_WEIGHTS);
 	else if (least > budget)
@@ -220,7 +219,6 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 	struct spectral_model *decoded = model->spectral = calloc(1, sizeof *decoded);
 	struct planes *planes = NULL;
 	uint32_t end = 0;
-	bp_status status;
 
 	if (!decoded)
 		return error_memory(error, sizeof *decoded);
@@ -229,7 +227,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 		                 count, model->layer_count);
 	decoded->dims = head->dims;
 	*failed = 0;
-	status = fields_read(&sections[0], decoded, error);
+	bp_status status = fields_read(&sections[0], decoded, error);
 	if (!status)
 		status = planes_create(head->dims, 0, &planes, error);
 	if (status)

@@ -6,7 +6,7 @@
 
 enum { EDGE = SPECTRAL_WEIGHTS_EDGE, PLAIN = SPECTRAL_WEIGHTS_EDGE_PLAIN * SPECTRAL_WEIGHTS_EDGE_PLAIN };
 
-/* From the left, upper and upper left neighbours: the median of both and the plane through all three (LOCO-I; Weinberger, Seroussi and Sapiro 2000). */
+/* The median of left, upper, and the plane through these and the upper left (LOCO-I; Weinberger, Seroussi and Sapiro 2000). */
 static int32_t likely(const uint8_t *weight, uint32_t n)
 {
 	if (n < EDGE)

@@ -1,6 +1,6 @@
 /*
- * weights_code.h: a model's weights as bytes (FORMAT.md, "Fields"): as they are where it is not graded, else each as its difference
- * from what those before it make likely, range coded.
+ * weights_code.h: a model's weights as bytes (FORMAT.md, "Fields"): as they are where it is not graded, else each as its
+ * difference from what those before it make likely, range coded.
  */
 #ifndef CODEC_SPECTRAL_WEIGHTS_CODE_H
 #define CODEC_SPECTRAL_WEIGHTS_CODE_H

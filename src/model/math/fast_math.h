@@ -62,7 +62,7 @@ static inline double fast_log2(double x)
 	return exponent + s * (even + z * odd);
 }
 
-/* log2(x) for normal positive float x. Error at most 1.5e-7 (|log2 x| <= 1) or 1 ulp of the result more; the series ends at s^9. */
+/* log2(x) for normal positive float x. Error at most 1.5e-7 (|log2 x| <= 1), or 1 ulp of the result more; a series to s^9. */
 static inline float fast_log2f(float x)
 {
 	const uint32_t root_half = 0x3f3504f3u, one = 0x3f800000u;
@@ -107,7 +107,7 @@ static inline double fast_exp2(double x)
 
 /*
  * 2^x for float x in [-126, 127]. Relative error at most 2e-7; 1 for 0. x = n + f, |f| <= 1/2; 2^f = 1 + f q(f), q the polynomial
- * through (2^f - 1)/f at six Chebyshev nodes (1e-8), its pairs of terms side by side: one after the other they would wait for each other.
+ * through (2^f - 1)/f at six Chebyshev nodes (1e-8), its pairs of terms side by side, so that none waits for another.
  */
 static inline float fast_exp2f(float x)
 {

@@ -1,7 +1,6 @@
 #include "fill.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "fill_kernels.h"

@@ -2,8 +2,8 @@
  * fill.h: smooth values for the invalid cells of a plane.
  *
  * The answer is close to a membrane stretched over the valid cells (each filled cell near the mean of its four
- * neighbours; the border is free), found in one pass over a pyramid: every level halves both extents, a coarse cell with any valid
- * child holds their mean and is itself valid; from the coarsest level down, invalid cells start from the
+ * neighbours; the border is free), found in one pass over a pyramid: every level halves both extents, a coarse cell with any
+ * valid child holds their mean and is itself valid; from the coarsest level down, invalid cells start from the
  * bilinear interpolation of the level above and are smoothed in place by SWEEPS sweeps. Work and memory are
  * proportional to the cells; the result depends on nothing but the arguments.
  *

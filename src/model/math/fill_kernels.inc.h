@@ -1,4 +1,4 @@
-/* fill_kernels.inc.h: all loops of fill_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+/* fill_kernels.inc.h: the loops of fill_kernels.h, for the including file's target. KERNEL(name) must be defined. */
 #include <string.h>
 
 #include "fill_kernels.h"

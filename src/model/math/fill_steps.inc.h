@@ -112,7 +112,7 @@ static void KERNEL(fill_interpolate)(const struct fill_level *coarse, const stru
 	}
 }
 
-/* Sweeps down and up the rows: an invalid cell becomes the mean of its neighbours, of which the row just passed is new already. */
+/* Sweeps down and up the rows: an invalid cell becomes the mean of its neighbours, those of the row just passed being new. */
 static void KERNEL(fill_smooth)(const struct fill_level *level, unsigned sweeps, float *scratch)
 {
 	const size_t rows = level->rows, columns = level->columns;

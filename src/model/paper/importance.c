@@ -93,8 +93,8 @@ static double cell_mean(const struct lattice *lattice, size_t cell, double scale
 }
 
 /*
- * The brightness of one light in one pixel: the mean of the channels' values times cos theta_i, or 0 where either direction is below the
- * horizon; of a cell and its mirror image, so that a mirrored table has the same unit.
+ * The brightness of one light in one pixel: the mean of the channels' values times cos theta_i, or 0 where either direction is
+ * below the horizon; of a cell and its mirror image, so that a mirrored table has the same unit.
  */
 static double light_drawn(const struct importance *m, const struct lattice *lattice, double scale, uint64_t *state)
 {

@@ -6,10 +6,11 @@
  *
  *     area/2 (o (2 i)^2 S(2 x i + 1/4) + i (2 o)^2 S(2 x o + 1/4)) e^2        S(p) = 1/(p + p^2/5)
  *
- * with x the value in units of one pixel's usual brightness: a strong light makes twice that, the others leave 1/4, and what is brighter
- * than white counts by its relative error. Both terms since a cell stands for both orders of its directions (reciprocity); o is the
- * share of a pixel in the picture, area that of all pairs of directions. Added is a little of the relative error,
- * 0.01/H (e/(x + 0.02))^2, less where a direction grazes and least below the horizon, where nothing is ever asked for.
+ * with x the value in units of one pixel's usual brightness: a strong light makes twice that, the others leave 1/4, and what is
+ * brighter than white counts by its relative error. Both terms since a cell stands for both orders of its directions
+ * (reciprocity); o is the share of a pixel in the picture, area that of all pairs of directions. Added is a little of the
+ * relative error, 0.01/H (e/(x + 0.02))^2, less where a direction grazes and least below the horizon, where nothing is ever asked
+ * for.
  */
 #ifndef MODEL_PAPER_IMPORTANCE_H
 #define MODEL_PAPER_IMPORTANCE_H
@@ -23,8 +24,8 @@ bp_status importance_create(struct lattice_dims dims, struct importance **out, b
 void importance_free(struct importance *importance); /* NULL is allowed */
 
 /*
- * The unit, in 1/sr: the brightness of the tenth-brightest of a hundred pixels under 29 lights of which five are strong, drawn from the
- * lattice's cells by a fixed sequence; the mean where that is 0. It is as large for a table as the table's values are.
+ * The unit, in 1/sr: the brightness of the tenth-brightest of a hundred pixels under 29 lights of which five are strong, drawn
+ * from the lattice's cells by a fixed sequence; the mean where that is 0. It is as large for a table as the table's values are.
  */
 double importance_unit(const struct importance *importance, const struct lattice *lattice);
 

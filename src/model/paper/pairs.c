@@ -120,7 +120,7 @@ static void shared_update(struct turns *t)
 
 /* ---- marginals ---- */
 
-/* From 40 degrees on f_h is such that c_hd is 1 in the geometric mean; then every marginal gets the mean 1 and is rounded as it is stored. */
+/* From 40 degrees on f_h makes c_hd 1 in the geometric mean; then every marginal gets the mean 1, and is rounded as stored. */
 static void marginals_settle(struct turns *t)
 {
 	struct channel_fit *c = t->channel;

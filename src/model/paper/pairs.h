@@ -1,10 +1,10 @@
 /*
  * pairs.h: c_hd, c_hphi and the shared slice of one channel, by turns.
  *
- * Above 40 degrees x_ijk ~ A_ij B_ik S_jk with A = K f_h f_d c_hd, B = f_phi c_hphi and S the shared slice: weighted least squares of each
- * against the others, first as free as they are, then with c_hd and c_hphi as their coefficients say. So what the one loses the
- * others mend, and the last of them, the slice, is fitted to what a decoder has. Below 40 degrees every theta_h has a slice of
- * its own, which says all; there c_hd is the geometric means' and c_hphi is 1, with little weight.
+ * Above 40 degrees x_ijk ~ A_ij B_ik S_jk with A = K f_h f_d c_hd, B = f_phi c_hphi and S the shared slice: weighted least
+ * squares of each against the others, first as free as they are, then with c_hd and c_hphi as their coefficients say. So what the
+ * one loses the others mend, and the last of them, the slice, is fitted to what a decoder has. Below 40 degrees every theta_h has
+ * a slice of its own, which says all; there c_hd is the geometric means' and c_hphi is 1, with little weight.
  */
 #ifndef MODEL_PAPER_PAIRS_H
 #define MODEL_PAPER_PAIRS_H

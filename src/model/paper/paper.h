@@ -39,15 +39,13 @@ uint32_t paper_shared_from(uint32_t theta_h);
 void paper_field_extents(struct lattice_dims dims, enum paper_field field, uint32_t *rows, uint32_t *columns);
 uint32_t paper_plane_cells(struct lattice_dims dims, enum paper_field field);
 
-/* How fine each coefficient of a field's plane is: its level along the rows and along the columns, 0 coarse, added. band[paper_plane_cells] */
+/* How fine each coefficient of a field's plane is: its levels along rows and columns, 0 coarse, added. band[paper_plane_cells] */
 void paper_plane_bands(struct lattice_dims dims, enum paper_field field, uint8_t *band);
 
 /* Coefficients that a channel may keep in a field; of the slices, in all of them together. At least one. */
 uint32_t paper_keep(struct lattice_dims dims, enum paper_field field);
 
-/*
- * Steps are stored as 2^((code - 32768)/256), marginals as 2^((code - 32768)/1024), code 0 being 0 there: to a third of a thousandth.
- */
+/* Steps are stored as 2^((code - 32768)/256), marginals as 2^((code - 32768)/1024), code 0 being 0 there: within 0.03 %. */
 enum { PAPER_STEP_ONE = 1 << 15, PAPER_STEP_LEAST = PAPER_STEP_ONE - 100 * 256, PAPER_STEP_MOST = PAPER_STEP_ONE + 30 * 256 };
 float paper_step(uint16_t code);
 uint16_t paper_code(float marginal); /* the nearest; of a positive number never 0 */
@@ -67,8 +65,8 @@ struct paper_model {
 };
 
 /*
- * *out, which paper_free frees, and the regression of each channel's measured values on its model. Nothing is kept on failure. Values from
- * 1e-300 to 1e300 are in range.
+ * *out, which paper_free frees, and the regression of each channel's measured values on its model. Nothing is kept on failure.
+ * Values from 1e-300 to 1e300 are in range.
  */
 bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out,
                     struct colour_fit colour[3], bp_error *error);
@@ -77,8 +75,7 @@ void sparse_field_free(struct sparse_field *field);
 void sparse_fields_free(struct sparse_field *fields, uint32_t count); /* the array too; NULL is allowed */
 
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h of a channel over the whole lattice: the model in units of its scale; >= 0 and finite. */
-bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table,
-                               bp_error *error);
+bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, float *table, bp_error *error);
 /* See model_expand. Channels that are not there become like the one that is. */
 bp_status paper_expand(const struct paper_model *paper, const struct colour_fit colour[3], uint32_t layers, struct expansion *out,
                        bp_error *error);

@@ -20,7 +20,7 @@ struct slices {
 	float *column; /* f_phi c_hphi of the slice */
 };
 
-/* Values stay below this, in 1/sr, so that they are finite in a MERL file too, which multiplies by 1500. Only hostile records come near. */
+/* Values stay below this, in 1/sr: in a MERL file they are up to 1500 times as large. Only hostile records come near. */
 static const double VALUE_MAX = 1e304;
 
 /* Factors stay below this, so that no product of them leaves the range of float. */
@@ -92,11 +92,10 @@ static void slice_expand(struct slices *s, uint32_t i, float *out)
 	}
 }
 
-bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, uint32_t layers, float *table,
-                               bp_error *error)
+bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, float *table, bp_error *error)
 {
 	struct slices s;
-	bp_status status = slices_begin(dims, channel, layers, &s, error);
+	bp_status status = slices_begin(dims, channel, PAPER_LAYERS, &s, error);
 
 	for (uint32_t i = 0; !status && i < dims.theta_h; i++)
 		slice_expand(&s, i, table + lattice_index(dims, i, 0, 0));

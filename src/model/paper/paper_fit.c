@@ -128,8 +128,8 @@ static double line_error(const struct workshop *w, const struct lattice *lattice
 }
 
 /*
- * The regression follows the many: where more than half of a channel is as good as black, its line is 0, lobe and all. Where it loses
- * that much against the model as it is, the model stays as it is.
+ * The regression follows the many: where more than half of a channel is as good as black, its line is 0, lobe and all. Where it
+ * loses that much against the model as it is, the model stays as it is.
  */
 static void colour_settle(const struct workshop *w, const struct lattice *lattice, int c, const struct paper_channel *channel,
                           struct colour_fit *colour)
@@ -158,7 +158,7 @@ bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, st
 		status = watch_tell(watch, 0.05 + 0.3 * c, error);
 		status = status ? status : channel_fit(&w, lattice, c, &paper->channel[c], error);
 		stage_enter(STAGE_REGRESSION);
-		status = status ? status : paper_channel_expand(paper->dims, &paper->channel[c], PAPER_LAYERS, w.value, error);
+		status = status ? status : paper_channel_expand(paper->dims, &paper->channel[c], w.value, error);
 		status = status ? status : robust_fit_channel(lattice, c, w.value, paper->channel[c].scale, &colour[c], error);
 		if (!status)
 			colour_settle(&w, lattice, c, &paper->channel[c], &colour[c]);

@@ -1,4 +1,4 @@
-/* paper_kernels.h: the loops of the paper's model, compiled twice (math/kernels.h). Arrays do not overlap but where they are the same. */
+/* paper_kernels.h: the loops of the paper's model, compiled twice (math/kernels.h). Arrays are the same or do not overlap. */
 #ifndef MODEL_PAPER_PAPER_KERNELS_H
 #define MODEL_PAPER_PAPER_KERNELS_H
 

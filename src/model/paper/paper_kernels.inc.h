@@ -1,4 +1,4 @@
-/* paper_kernels.inc.h: all loops of paper_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+/* paper_kernels.inc.h: the loops of paper_kernels.h, for the including file's target. KERNEL(name) must be defined. */
 #include "paper_kernels.h"
 #include "model/math/vector.h"
 

@@ -1,8 +1,8 @@
 /*
  * slices.h: the conditional pairs c_dphi|h of one channel, fitted against the coded pairs.
  *
- * First every slice gets an equal share of the coefficients, from the last slice down, each starting from what its neighbour ended
- * with. Then the shares are dealt out anew: the largest gains of all slices are kept, wherever they are.
+ * First every slice gets an equal share of the coefficients, from the last slice down, each starting from what its neighbour
+ * ended with. Then the shares are dealt out anew: the largest gains of all slices are kept, wherever they are.
  */
 #ifndef MODEL_PAPER_SLICES_H
 #define MODEL_PAPER_SLICES_H

@@ -1,11 +1,11 @@
 /*
  * sparse_fit.h: a field by few wavelet coefficients: weighted least squares with a limit on how many are not 0.
  *
- * Coefficients x, field y, weights w, the inverse transform T: minimise the sum of w (y - T x)^2. *Energy* e of a coefficient is the sum
- * of w t^2, t its basis function: e x^2 is what leaving it out costs, and g/e what a step along the gradient g = T'w(y - T x) gives.
- * A round keeps the coefficients of the largest gain e (x + 0.7 g/e)^2, zeroes the others, and takes conjugate-gradient steps on the
- * kept ones, preconditioned by their energies. Where weights vanish energies do too, so the preconditioner has a
- * twentieth of the mean weight more.
+ * Coefficients x, field y, weights w, the inverse transform T: minimise the sum of w (y - T x)^2. *Energy* e of a coefficient is
+ * the sum of w t^2, t its basis function: e x^2 is what leaving it out costs, and g/e what a step along the gradient g = T'w(y -
+ * T x) gives. A round keeps the coefficients of the largest gain e (x + 0.7 g/e)^2, zeroes the others, and takes
+ * conjugate-gradient steps on the kept ones, preconditioned by their energies. Where weights vanish energies do too, so the
+ * preconditioner has a twentieth of the mean weight more.
  */
 #ifndef MODEL_PAPER_SPARSE_FIT_H
 #define MODEL_PAPER_SPARSE_FIT_H
@@ -50,13 +50,13 @@ bool gain_kept(struct gain_limit *limit, float gain); /* ask for each once, in o
 float gain_at(struct gain_limit limit);               /* the least gain of the edge's bin */
 
 /*
- * Zeroes x where not kept and takes `steps` conjugate-gradient steps on those that are; fit->gradient must belong to x when called, and
- * does when it returns.
+ * Zeroes x where not kept and takes `steps` conjugate-gradient steps on those that are; fit->gradient must belong to x when
+ * called, and does when it returns.
  */
 void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
                        const uint8_t *kept, uint32_t steps, float *x);
 
-/* `rounds` rounds from x, `keep` coefficients each. energy and least are of sparse_fit_energies. Returns the last round's gain_at. */
+/* `rounds` rounds from x, `keep` coefficients each; energy, least: of sparse_fit_energies. Returns the last round's gain_at. */
 float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
                         size_t keep, uint32_t rounds, uint32_t steps, uint8_t *kept, float *x);
 
@@ -64,8 +64,8 @@ float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float
 bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const float *weight);
 
 /*
- * Quantises: levels of step `unit` / sqrt(the geometric mean of the energies of what is not 0). A field that is 1 is left out (count 0). The
- * caller owns out's arrays.
+ * Quantises: levels of step `unit` / sqrt(the geometric mean of the energies of what is not 0). A field that is 1 is left out
+ * (count 0). The caller owns out's arrays.
  */
 bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
                               float unit, const float *x, struct sparse_field *out, bp_error *error);

@@ -5,7 +5,7 @@
 
 #include "paper_kernels.h"
 
-/* sqrt(1/2); ((1 + sqrt 3)/8, (3 + sqrt 3)/8, (3 - sqrt 3)/8, (1 - sqrt 3)/8) sqrt 2; the wavelet filter is g_k = (-1)^k h_(taps-1-k) */
+/* sqrt(1/2); (1 + sqrt 3, 3 + sqrt 3, 3 - sqrt 3, 1 - sqrt 3) sqrt(2)/8; the wavelet filter is g_k = (-1)^k h_(taps-1-k) */
 static const struct wavelet_filter FILTERS[] = {
 	[WAVELET_HAAR] = {2, {0.707106781f, 0.707106781f}, {0.707106781f, -0.707106781f}},
 	[WAVELET_DAUBECHIES] = {4,

@@ -7,7 +7,7 @@
  *
  * phi_d is *mirrored* first: with P cells, k and P - 1 - k make an even part (x[k] + x[P-1-k])/sqrt 2 and an odd one
  * (x[k] - x[P-1-k])/sqrt 2, each of h = ceil(P/2) cells (of an odd P the middle cell is even as it is), and each is carried
- * on an axis of its own. Materials whose lobes look the same from both sides have no odd part, and no jump where the even one ends.
+ * on an axis of its own. Materials whose lobes look the same from both sides have no odd part, and no jump at the even one's end.
  *
  * Both families are compactly supported and orthonormal: the sum of squares is kept and the inverse is the transpose.
  */
@@ -46,16 +46,16 @@ static inline size_t wavelet_field_cells(const struct wavelet_plane *p) { return
 static inline size_t wavelet_cells(const struct wavelet_plane *p) { return (size_t)p->rows.plane * p->columns.plane * p->parts; }
 
 /*
- * field[rows.field * field_columns], row-major, 0 outside <-> coefficient[(part * columns.plane + column) * rows.plane + row]. Every
- * axis is taken apart completely: along it, coefficients 0..m/2^L-1 are the coarse ones, then the details of each
+ * field[rows.field * field_columns], row-major, 0 outside <-> coefficient[(part * columns.plane + column) * rows.plane + row].
+ * Every axis is taken apart completely: along it, coefficients 0..m/2^L-1 are the coarse ones, then the details of each
  * level from coarse to fine, cells in order. scratch: 3 planes.
  */
 void wavelet_forward(const struct wavelet_plane *p, const float *field, float *coefficient, float *scratch);
 void wavelet_inverse(const struct wavelet_plane *p, const float *coefficient, float *field, float *scratch);
 
 /*
- * Squares of the basis: of coefficient a of an axis at cell n, square[a * field + n]. One axis of one part, not mirrored; the caller frees it.
- * NULL when there is no memory.
+ * Squares of the basis: of coefficient a of an axis at cell n, square[a * field + n]. One axis of one part, not mirrored; the
+ * caller frees it. NULL when there is no memory.
  */
 float *wavelet_squares(enum wavelet kind, struct wavelet_axis axis);
 

@@ -1,8 +1,8 @@
 /* wavelet.inc.h: one level of a transform along the rows' index, and the mirrored parts of a row. See wavelet.h. */
 
 /*
- * n rows of `width` values: row i of low is sum_k h_k in row (2 i + k), of high the same with g; row numbers are modulo n. n is even.
- * Two and four taps apart, so that a row is written once.
+ * n rows of `width` values: row i of low is sum_k h_k in row (2 i + k), of high the same with g; row numbers are modulo n. n is
+ * even. Two and four taps apart, so that a row is written once.
  */
 static void KERNEL(wavelet_split)(const struct wavelet_filter *f, const float *in, size_t n, size_t width, float *low,
                                   float *high)

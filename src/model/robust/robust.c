@@ -108,8 +108,8 @@ static void fit_still(struct robust_fit *fit)
 }
 
 /*
- * The regression of design->y on unit * design->x, n of each: both are scaled by powers of two to about 1, and the line back. The unit
- * enters by its exponent and mantissa, so that it may be of any size. `still`: fit_still.
+ * The regression of design->y on unit * design->x, n of each: both are scaled by powers of two to about 1, and the line back. The
+ * unit enters by its exponent and mantissa, so that it may be of any size. `still`: fit_still.
  */
 static void design_fit(struct design *design, double unit, uint32_t limit, bool still, struct robust_fit *out)
 {

@@ -66,8 +66,9 @@ struct colour_fit {
 struct colour_fit robust_colour(const struct robust_fit *fit, size_t n);
 
 /*
- * The regression of a channel's measured values (1/sr) on unit * model over the lattice's valid cells; model[cells]. Terms below 2^-126
- * of the channel's largest value are 0. It goes on until it converges, which takes 10 to 2,000 iterations on measured materials.
+ * The regression of a channel's measured values (1/sr) on unit * model over the lattice's valid cells; model[cells]. Terms below
+ * 2^-126 of the channel's largest value are 0. It goes on until it converges, which takes 10 to 2,000 iterations on measured
+ * materials.
  */
 bp_status robust_fit_channel(const struct lattice *lattice, int channel, const float *model, double unit, struct colour_fit *out,
                              bp_error *error);

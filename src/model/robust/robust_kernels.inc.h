@@ -1,4 +1,4 @@
-/* robust_kernels.inc.h: all loops of robust_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+/* robust_kernels.inc.h: the loops of robust_kernels.h, for the including file's target. KERNEL(name) must be defined. */
 #include "robust_kernels.h"
 #include "model/math/vector.h"
 

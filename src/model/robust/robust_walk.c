@@ -104,7 +104,7 @@ static double line_step(const struct robust_sums *s, struct robust_line *line)
 	double sxx = s->wxx - s->wx * mean_dx;
 	const double x = centre_moved(line->centre_x, mean_dx);
 
-	/* What is left of a cancellation is noise: where the weighted x are constant it must count as 0, or the slope grows without bound. */
+	/* What a cancellation leaves is noise: where the weighted x are constant it counts as 0, or the slope grows without bound. */
 	if (sxx <= 16 * DBL_EPSILON * s->wxx)
 		sxx = 0;
 	const double d0 = balance(s->root), d1 = balance(s->root * fabs(x));

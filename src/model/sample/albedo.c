@@ -63,7 +63,7 @@ struct albedo_cache {
 	uint32_t bits[ANGLES][3]; /* of floats */
 };
 
-/* Coordinate x in [0, 1] stands for theta = sin^2(x pi/2) pi/2, dense at both ends; the last angle is a little above the horizon. */
+/* x in [0, 1] stands for theta = sin^2(x pi/2) pi/2, dense at both ends; the last angle is a little above the horizon. */
 static float angle_theta(int n)
 {
 	double cosine = cos((double)n / (ANGLES - 1) * HALF_PI);

@@ -15,8 +15,8 @@ static inline float horizon_choice(uint32_t all_bits, float yes, float no)
 /*
  * The largest s at which wi is above the horizon, for wo at (sine, cosine) and cos phi_h; cosine at least 1e-6.
  *
- * With f = |sine cos phi|, r^2 = f^2 + cosine^2 and sin psi = f/r (negative where cos phi is), sin^2 theta_max = (1 + sin psi)/2, and
- * s = sin^2(theta_max/2). Without cancellation, and multiplied out to one division, with g = r (r + f):
+ * With f = |sine cos phi|, r^2 = f^2 + cosine^2 and sin psi = f/r (negative where cos phi is), sin^2 theta_max = (1 + sin psi)/2,
+ * and s = sin^2(theta_max/2). Without cancellation, and multiplied out to one division, with g = r (r + f):
  *     s = (r + f) sqrt(g) / (4 r (sqrt(g) + cosine sqrt(1/2)))                 where cos phi >= 0
  *     s = cosine^2 / (4 sqrt(g) (sqrt(g) + (r + f) sqrt(1/2)))                 where cos phi < 0
  */

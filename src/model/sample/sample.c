@@ -1,7 +1,5 @@
 #include "sample.h"
 
-#include <stdlib.h>
-
 #include "sampler.h"
 
 /* sin and cos of t quarter turns, t in [0, 2]; absolute error below 2e-7. Chebyshev fits about t = 1. */
@@ -12,7 +10,7 @@ static inline void sine_cosine(float t, float *sine, float *cosine)
 	*sine = ((((-2.38241524e-05f * q + 0.000917722924f) * q - 0.0208626867f) * q + 0.253669322f) * q - 1.23370053f) * q + 1;
 }
 
-/* wo normalised, with the sine of its polar angle, the unit vector of its azimuth ((1, 0) at the pole), and its place between two nodes. */
+/* wo normalised, the sine of its polar angle, its azimuth as a unit vector ((1, 0) at the pole), its place between two nodes. */
 struct outgoing {
 	float x, y, z, sine, ex, ey;
 	int node;    /* this one and the next */

@@ -27,8 +27,8 @@ size_t sampler_bytes(const struct sampler *sampler);
 
 /*
  * Draws wi (unit length, above the horizon) for wo and three independent uniform numbers in [0, 1), and returns its
- * density per solid angle: what sampler_pdf returns for the same pair, > 0 and finite. Numbers outside [0, 1) are clamped, NaN is 0.
- * Returns 0, with wi = 0, where wo is below or on the horizon, zero, infinite or NaN.
+ * density per solid angle: what sampler_pdf returns for the same pair, > 0 and finite. Numbers outside [0, 1) are clamped, NaN is
+ * 0. Returns 0, with wi = 0, where wo is below or on the horizon, zero, infinite or NaN.
  */
 float sampler_draw(const struct sampler *sampler, const float wo[3], const float u[3], float wi[3]);
 /* The density of wi given wo; 0 where either is unusable (see table.h). */

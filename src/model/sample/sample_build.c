@@ -1,6 +1,5 @@
 /* Building a sampler's tables from the values of a table. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "memory.h"

@@ -9,7 +9,7 @@
 #include "sample.h"
 
 enum { NODES = 40, PHIS_ROOT = 4, PHIS = PHIS_ROOT * PHIS_ROOT, BINS_ROOT = 8, BINS = BINS_ROOT * BINS_ROOT };
-/* Intervals of s that begin at every 32nd of an octave from 2^-25, the end of the first bin, to 1/2; and one for what is below. */
+/* Intervals of s, from every 32nd of an octave between 2^-25, the end of the first bin, and 1/2; and one for what is below. */
 enum { GUESSES = 24 * 32 + 2 };
 
 #define PI_F 3.14159265f
@@ -29,7 +29,7 @@ static inline float turns_of_squares(float y, float x)
 	return quarter_turns_of_squares_x4((f32x4){y, 0, 0, 0}, (f32x4){x, 1, 1, 1}, (f32x4){1, 1, 1, 1})[0];
 }
 
-/* Where between the nodes an angle lies, from the squares of its sine and cosine: dense at grazing. cosine = 0 is the last node. */
+/* An angle's place between the nodes, from the squares of its sine and cosine: dense at grazing. cosine = 0: the last node. */
 static inline float node_coordinate(float sine2, float cosine2)
 {
 	return (NODES - 1) * (1 - sqrtf(turns_of_squares(cosine2, sine2)));

@@ -7,8 +7,8 @@
  *     IV(n): rotate (x_k, x_{n-1-k}) by f_k = pi (2 k + 1) / 4 n to (a_k, b_k); A = II(n/2) of a, B = II(n/2) of (-1)^k b;
  *            X_0 = A_0, X_{2p} and X_{2p-1} = A_p + and - B_{n/2-p}, X_{n-1} = -B_0
  *
- * (Wang 1984; Britanak, Yip and Rao 2007) until n is odd or small; what is left are products with cosine tables, which are fast. 180 values
- * take 5,064 multiplications in products instead of the 16,200 of II(180) folded once.
+ * (Wang 1984; Britanak, Yip and Rao 2007) until n is odd or small; what is left are products with cosine tables, which are fast.
+ * 180 values take 5,064 multiplications in products instead of the 16,200 of II(180) folded once.
  */
 #ifndef MODEL_SPECTRAL_COSINES_H
 #define MODEL_SPECTRAL_COSINES_H

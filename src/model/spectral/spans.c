@@ -68,7 +68,7 @@ void spans_find(struct lattice_dims d, float limit, uint16_t *span)
 		uint32_t k = 0; /* the first above the limit, or `half`: the larger theta_d, the later */
 		quarter_cos_sin((double)i / d.theta_h * ((double)i / d.theta_h), &cos_h, &sin_h);
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			while (k < half && !(cos_h * cos_d[j] - sin_h * sin_d[j] * least[k] > (double)limit))
+			while (k < half && limit > 0 && !(cos_h * cos_d[j] - sin_h * sin_d[j] * least[k] > (double)limit))
 				k++;
 			*span++ = (uint16_t)(k < half ? d.phi_d - 2 * k : 2 - d.phi_d % 2);
 		}

@@ -14,7 +14,8 @@
  * the table's values that scales as they do, so a table s times as bright gives the same fields and s times the unit.
  *
  * A model that was fitted holds coefficients as they were found; one that was decoded holds levels, a coefficient
- * being about level * step times the factor of its place. What lies below the quantiser's step is lost in encoding, where the budget is known.
+ * being about level * step times the factor of its place. What lies below the quantiser's step is lost in encoding, where the
+ * budget is known.
  */
 #ifndef MODEL_SPECTRAL_SPECTRAL_H
 #define MODEL_SPECTRAL_SPECTRAL_H
@@ -44,9 +45,8 @@ struct spectral_level {
  */
 struct spectral_model {
 	struct lattice_dims dims;
-	double unit; /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
-	float base
-		[3]; /* of every channel: the mean of its y over the valid cells, taken off before the rest; keeps float exact enough */
+	double unit;   /* SPECTRAL_UNIT_LEAST to SPECTRAL_UNIT_MOST */
+	float base[3]; /* of every channel: the mean of its y over the valid cells, taken off first; keeps float exact enough */
 	float rotation[3][3]; /* orthonormal */
 	struct spectral_weights weights;
 	float *coefficient[3]; /* fitted: spectra of the three fields, divided by the weights' factors; NULL when decoded */
@@ -54,27 +54,25 @@ struct spectral_model {
 	float noise;           /* fitted: level of the noise that was found and drawn towards 0 (spectral_denoise); 0: none */
 
 	float step; /* decoded, as all that follows */
-	float centre
-		[3]; /* where values of |level| 1 and of larger ones lie beyond it, in steps; and for levels whose last planes are not there, as a share of what is missing */
+	/* how far values of |level| 1, and of larger ones, lie beyond it, in steps; and with planes missing, as a share of what is */
+	float centre[3];
 	uint32_t planes;
 	uint32_t end[LAYERS_MAX];
 	struct spectral_level *levels; /* ordered by field and harmonic */
 	uint32_t level_count;
 };
 
-/* *out, which spectral_free frees, and the regression of each channel on the measured mean of the three. Nothing is kept on failure. */
+/* *out, for spectral_free, and the regression of each channel on the measured mean of the three. Nothing is kept on failure. */
 bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *options, struct spectral_model **out,
                        struct colour_fit colour[3], bp_error *error);
-/* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
-float spectral_most(double unit);
 /*
- * Layers 0..layers-1 of a decoded model; BP_ERROR_ARGUMENT for one that was fitted. half: every second value along each axis (extents
- * even); *out has half the model's extents.
+ * Layers 0..layers-1 of a decoded model; BP_ERROR_ARGUMENT for one that was fitted. half: every second value along each axis
+ * (extents even); *out has half the model's extents.
  */
 bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, bool half, struct expansion *out, bp_error *error);
 /*
  * The same as 16-bit floats of table.h's expanded form in units of SPECTRAL_CODES_UNIT times the model's unit:
- * `channels` of them for every cell, 3 or 1, the channels' mean; rows of phi_d begin `stride` codes apart. No table of floats is made.
+ * `channels` of them for every cell, 3 or 1, the channels' mean; rows of phi_d begin `stride` codes apart. No floats are kept.
  */
 bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out,
                                 size_t stride, bp_error *error);
@@ -82,9 +80,6 @@ void spectral_free(struct spectral_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
 uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
-
-/* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
-float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest);
 
 /*
  * spectral_denoise.c: draws coefficients that noise alone would explain towards 0, in the spectra of the three fields. *level: the noise's
@@ -108,8 +103,8 @@ bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, 
                            float *const table[3], bp_error *error);
 
 /*
- * spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. Where `ready` is set, it makes all
- * cells of a table up to `end`, or more, before they are looked at, slice after slice, so that they still lie in the cache.
+ * spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. Where `ready` is set, it
+ * makes all cells of a table up to `end`, or more, before they are looked at, slice after slice, while they lie in the cache.
  */
 typedef void spectral_ready_fn(void *user, int table, size_t end);
 bp_status spectral_fill(struct lattice_dims dims, const uint8_t *valid, float *const table[3], spectral_ready_fn *ready,

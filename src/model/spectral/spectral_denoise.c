@@ -59,10 +59,10 @@ static double size_of_rank(const float *size, size_t n, size_t rank, double *few
 
 static double median(const float *size, size_t n, double *few) { return size_of_rank(size, n, n / 2, few); }
 
-/* Is the row in whose middle the detail (y, x) of the finest diagonal band lies a whole one? span: NULL where all are. */
+/* Is the row in whose middle the detail (y, x) of the finest diagonal band lies a whole one? */
 static bool detail_whole(struct lattice_dims d, const uint16_t *span, uint32_t y, uint32_t x)
 {
-	return !span || span[(2 * y + 1) * d.theta_d + 2 * x + 1] == d.phi_d;
+	return span[(2 * y + 1) * d.theta_d + 2 * x + 1] == d.phi_d;
 }
 
 /* The scale of every column, from a quarter of its coefficients of the higher harmonics. */

@@ -1,62 +1,82 @@
-/* spectral_expand.c: coefficients become a table, block by block of phi_d; the inverse of spectral_fit.c. */
-#include "spectral_expand.h"
-
+/* spectral_expand.c: coefficients become a table, some rows of phi_d at a time; the inverse of spectral_fit.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
-#include "memory.h"
-#include "spectral_terms.h"
 #include "spectral_kernels.h"
+#include "spectral_terms.h"
+#include "spectrum_rows.h"
 
-float spectral_most(double unit)
+/*
+ * Cells column..column + width - 1 of row `row` (theta_h * D + theta_d): three fields, which may be read up to 15 cells past
+ * the last. The row's other cells, on either side, have the value of the one beside them.
+ */
+struct spectral_row {
+	const float *field[3];
+	size_t row;
+	uint32_t column, width;
+};
+typedef void spectral_row_fn(void *user, const struct spectral_row *row);
+
+/* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
+static float most_of(double unit)
 {
 	int exponent;
 	frexp(unit, &exponent);
 	return exponent > 1011 - 40 ? (float)(1011 - exponent) : 40;
 }
 
-bp_status spectral_expand_blocks(const struct spectral_model *model, uint32_t layers, spectral_block_fn *take, void *user,
-                                 bp_error *error)
+/* One more than the highest harmonic with a term. */
+static uint32_t harmonics_used(const struct spectral_terms *terms, uint32_t p)
+{
+	uint32_t most = 0;
+	for (uint32_t u = 0; u < 3 * p; u++)
+		if (terms->start[u + 1] > terms->start[u] && u % p >= most)
+			most = u % p + 1;
+	return most;
+}
+
+/* All rows, or those of the table of every second value. */
+static bp_status expand(const struct spectral_model *model, uint32_t layers, bool half, spectral_row_fn *take, void *user,
+                        bp_error *error)
 {
 	const struct lattice_dims d = model->dims;
-	const size_t rows = (size_t)d.theta_h * d.theta_d, cells = rows * SPECTRUM_BLOCK;
+	const uint32_t count = d.theta_h * d.theta_d / (half ? 4 : 1);
+	const size_t stride = d.phi_d + 15, piece = SPECTRUM_BLOCK * stride;
 	struct spectrum_inverse *inverse = NULL;
+	struct spectrum_rows *rows = NULL;
 	struct spectral_terms terms = {0};
-	float *planes = memory_alloc(3 * cells * sizeof *planes);
-	bp_status status = planes ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * cells * sizeof *planes);
 
+	if (model->coefficient[0])
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a model that was fitted has no levels; its record has");
+	float *fields = calloc(3 * piece, sizeof *fields);
+	bp_status status = fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * piece * sizeof *fields);
 	if (!status)
 		status = spectral_weights_apply(&model->weights, inverse, error);
 	if (!status)
 		status = spectral_terms_make(model, inverse, layers, &terms, error);
-	for (uint32_t k = 0; !status && k < d.phi_d; k += SPECTRUM_BLOCK) {
-		const struct spectral_block block = {
-			.field = {planes, planes + cells, planes + 2 * cells},
-			.rows = rows,
-			.column = k,
-			.width = d.phi_d - k < SPECTRUM_BLOCK ? d.phi_d - k : SPECTRUM_BLOCK,
-			.stride = SPECTRUM_BLOCK,
-		};
-		for (size_t f = 0; f < 3; f++)
-			spectrum_inverse_block(inverse, terms.term, terms.start + f * d.phi_d, k, planes + f * cells);
-		take(user, &block);
+	if (!status)
+		status = spectrum_rows_create(inverse, model->limit, harmonics_used(&terms, d.phi_d), half, &rows, error);
+	for (int f = 0; !status && f < 3; f++)
+		status = spectrum_rows_field(rows, f, terms.term, terms.start + (size_t)f * d.phi_d, error);
+	for (uint32_t r = 0; !status && r < count; r += SPECTRUM_BLOCK) {
+		const uint32_t here = count - r < SPECTRUM_BLOCK ? count - r : SPECTRUM_BLOCK;
+		for (int f = 0; f < 3; f++)
+			spectrum_rows_cells(rows, f, r, here, fields + (size_t)f * piece, stride);
+		for (uint32_t n = 0; n < here; n++) {
+			struct spectral_row row = {.row = r + n};
+			spectrum_rows_seen(rows, r + n, &row.column, &row.width);
+			for (int f = 0; f < 3; f++)
+				row.field[f] = fields + (size_t)f * piece + n * stride + row.column;
+			take(user, &row);
+		}
 	}
 	spectral_terms_free(&terms);
+	spectrum_rows_free(rows);
 	spectrum_inverse_free(inverse);
-	free(planes);
+	free(fields);
 	return status;
-}
-
-static bp_status expand(const struct spectral_model *model, uint32_t layers, bool half, spectral_block_fn *take, void *user,
-                        bp_error *error)
-{
-	if (model->coefficient[0])
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a model that was fitted has no levels; its record has");
-	if (model->limit > 0)
-		return spectral_expand_rows(model, layers, half, take, user, error);
-	return (half ? spectral_expand_half_blocks : spectral_expand_blocks)(model, layers, take, user, error);
 }
 
 /* `bytes` bytes of values of `size` bytes, each as the one at `value`; twice as many from step to step. */
@@ -69,13 +89,13 @@ static void repeat(uint8_t *to, const uint8_t *value, size_t size, size_t bytes)
 	}
 }
 
-/* The cells on either side of a block that is alone, in a row of p values of `size` bytes. */
-static void sides_fill(const struct spectral_block *block, void *row, size_t size, uint32_t p)
+/* The cells on either side of what is there of a row of p values of `size` bytes. */
+static void sides_fill(const struct spectral_row *from, void *row, size_t size, uint32_t p)
 {
-	const uint32_t end = block->column + block->width;
-	uint8_t *own = (uint8_t *)row + block->column * size, *behind = (uint8_t *)row + end * size;
+	const uint32_t end = from->column + from->width;
+	uint8_t *own = (uint8_t *)row + from->column * size, *behind = (uint8_t *)row + end * size;
 
-	repeat(row, own, size, block->column * size);
+	repeat(row, own, size, from->column * size);
 	repeat(behind, behind - size, size, (p - end) * size);
 }
 
@@ -84,17 +104,17 @@ struct values_target {
 	const struct expansion *out;
 };
 
-static void values_take(void *user, const struct spectral_block *block)
+static void values_take(void *user, const struct spectral_row *row)
 {
 	const struct values_target *target = user;
 	const struct spectral_model *m = target->model;
-	const size_t p = target->out->dims.phi_d, at = block->row * p + block->column;
+	const size_t p = target->out->dims.phi_d, at = row->row * p + row->column;
 	float *const rgb[3] = {target->out->rgb[0] + at, target->out->rgb[1] + at, target->out->rgb[2] + at};
 
-	spectral_kernels_get()->spectral_values(block->field, block->rows, block->width, block->stride, m->base,
-	                                        (const float(*)[3])m->rotation, spectral_most(m->unit), rgb, p);
-	for (int c = 0; c < 3 && block->alone; c++)
-		sides_fill(block, target->out->rgb[c] + block->row * p, sizeof(float), (uint32_t)p);
+	spectral_kernels_get()->spectral_values(row->field, row->width, m->base, (const float(*)[3])m->rotation, most_of(m->unit),
+	                                        rgb);
+	for (int c = 0; c < 3; c++)
+		sides_fill(row, target->out->rgb[c] + row->row * p, sizeof(float), (uint32_t)p);
 }
 
 bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, bool half, struct expansion *out, bp_error *error)
@@ -112,17 +132,16 @@ struct codes_target {
 	uint32_t cells; /* of a row */
 };
 
-static void codes_take(void *user, const struct spectral_block *block)
+static void codes_take(void *user, const struct spectral_row *row)
 {
 	const struct codes_target *target = user;
 	const struct spectral_model *m = target->model;
-	uint16_t *row = target->out + block->row * target->stride, *out = row + (size_t)block->column * (size_t)target->channels;
+	const size_t channels = (size_t)target->channels;
+	uint16_t *out = target->out + row->row * target->stride;
 
-	spectral_kernels_get()->spectral_codes(block->field, block->rows, block->width, block->stride, m->base,
-	                                       (const float(*)[3])m->rotation, spectral_most(m->unit), target->channels, out,
-	                                       target->stride);
-	if (block->alone)
-		sides_fill(block, row, (size_t)target->channels * sizeof *row, target->cells);
+	spectral_kernels_get()->spectral_codes(row->field, row->width, m->base, (const float(*)[3])m->rotation, most_of(m->unit),
+	                                       target->channels, out + row->column * channels);
+	sides_fill(row, out, channels * sizeof *out, target->cells);
 }
 
 bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out,

@@ -1,7 +1,8 @@
 /*
  * spectral_fit.c: a measured lattice becomes the spectra of three fields.
  *
- *     logarithms -> fill -> spectrum, rows cut at the horizon, per channel -> rotation to the channels' principal axes -> noise drawn towards 0 -> weights
+ *     logarithms -> fill -> spectrum, rows cut at the horizon, per channel -> rotation to the channels' principal axes -> noise
+ *     drawn towards 0 -> weights
  *
  * and, beside it, the paper's colour regression on the measured achromatic table.
  *
@@ -93,21 +94,20 @@ static void rotation_find(float *const channel[3], size_t rows, size_t lanes, fl
 }
 
 /*
- * The lattice, with only the cells that a picture can be made of as valid ones; *counted, which the caller frees, is their marks. What
- * lies wholly below the horizon is filled instead: it would cost as much as what is seen (VARIANTS.md), and interpolation takes
- * less than half of its value from it. Where nothing else is there, all valid cells stay.
+ * The lattice, with only the cells that a picture can be made of as valid ones; *counted, which the caller frees, is their marks.
+ * What lies wholly below the horizon is filled instead: it would cost as much as what is seen (VARIANTS.md), and interpolation
+ * takes less than half of its value from it. Where nothing else is there, all valid cells stay.
  */
 static bp_status seen_cells(const struct lattice *lattice, struct lattice *out, uint8_t **counted, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims);
 	size_t count = 0;
-	bp_status status;
 
 	*out = *lattice;
 	*counted = malloc(cells);
 	if (!*counted)
 		return error_memory(error, cells);
-	status = lattice_seen(lattice->dims, *counted, error);
+	bp_status status = lattice_seen(lattice->dims, *counted, error);
 	for (size_t n = 0; !status && n < cells; n++)
 		count += (*counted)[n] &= lattice->valid[n];
 	if (count) {
@@ -184,7 +184,7 @@ static bp_status fields_make(struct lattice_dims d, struct spectrum *spectrum, c
 	return status;
 }
 
-/* Steps of spectral_project by effort 0..9 (0: not told, as records may say): what the first saves, 3 % of a record, costs a sixth of a fit. */
+/* Steps of spectral_project by effort 0..9 (0: a record does not say): the first saves 3 % of a record, for a sixth of a fit. */
 static const int PROJECTIONS[10] = {0, 0, 0, 0, 0, 0, 1, 2, 4, 8};
 
 /* fields_make after better values have been found for the invalid cells; noise would only be carried on into them. */
@@ -193,11 +193,10 @@ static bp_status fields_improve(const struct lattice *lattice, const struct fit_
 {
 	const float base[3] = {fitted->base[order[0]], fitted->base[order[1]], fitted->base[order[2]]};
 	float rotation[3][3];
-	bp_status status;
 
 	memcpy(fitted->coefficient[0], filled, 3 * lattice_cells(lattice->dims) * sizeof *filled);
 	stage_enter(STAGE_CLEAN);
-	status = watch_tell(options->watch, 0.5, error);
+	bp_status status = watch_tell(options->watch, 0.5, error);
 	if (status)
 		return status;
 	status = spectral_project(spectrum, lattice->dims, lattice->valid, base, &fitted->weights, fitted->limit,
@@ -248,7 +247,6 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	uint8_t *counted = NULL;
 	float *filled = NULL, rotation[3][3];
 	int order[3]; /* coefficient[k] is channel order[k], until it becomes field k */
-	bp_status status;
 
 	if (!fitted)
 		return error_memory(error, sizeof *fitted);
@@ -263,7 +261,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 	fitted->coefficient[1] = fitted->coefficient[0] + cells;
 	fitted->coefficient[2] = fitted->coefficient[1] + cells;
 	stage_enter(STAGE_REGRESSION);
-	status = spectral_survey_draw(lattice, &sample, error);
+	bp_status status = spectral_survey_draw(lattice, &sample, error);
 	if (!status)
 		status = spectral_survey_colour(&sample, colour, error);
 	stage_enter(STAGE_CLEAN);

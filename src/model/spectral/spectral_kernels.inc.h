@@ -1,4 +1,4 @@
-/* spectral_kernels.inc.h: all loops of spectral_kernels.h, for the target that the including file is compiled for. KERNEL(name) must be defined. */
+/* spectral_kernels.inc.h: the loops of spectral_kernels.h, for the including file's target. KERNEL(name) must be defined. */
 #include "spectral_kernels.h"
 #include "model/math/vector.h"
 
@@ -17,7 +17,6 @@ const struct spectral_kernels KERNEL(spectral_kernels) = {
 	.cosine_gather = KERNEL(cosine_gather),
 	.cosine_scatter = KERNEL(cosine_scatter),
 	.cdf97_forward = KERNEL(cdf97_forward),
-	.spectrum_spread = KERNEL(spectrum_spread),
 	.cdf97_plane = KERNEL(cdf97_plane),
 	.spectral_logs = KERNEL(spectral_logs),
 	.spectral_largest = KERNEL(spectral_largest),

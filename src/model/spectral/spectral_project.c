@@ -1,9 +1,9 @@
 /*
- * spectral_project.c: better values for invalid cells, at the price of a pair of transforms: what the coefficients that a record can
- * hold say about them (projections onto convex sets, as Papoulis and Gerchberg did it for band-limited signals).
+ * spectral_project.c: better values for invalid cells, at the price of a pair of transforms: what the coefficients that a record
+ * can hold say about them (projections onto convex sets, as Papoulis and Gerchberg did it for band-limited signals).
  *
- * A step takes the spectrum, drops what is below a threshold, and sets the invalid cells to what is left; measured cells stay. The
- * threshold falls to the one that leaves as many coefficients as the budget has bytes for.
+ * A step takes the spectrum, drops what is below a threshold, and sets the invalid cells to what is left; measured cells stay.
+ * The threshold falls to the one that leaves as many coefficients as the budget has bytes for.
  */
 #include <math.h>
 #include <stdlib.h>

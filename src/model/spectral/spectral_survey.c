@@ -62,9 +62,10 @@ bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_su
 }
 
 /*
- * The paper's regression of each channel on the measured achromatic value. The fields carry colour, so these six numbers are a summary
- * here: a sample gives them in a twentieth of the time. On the nine surrogates of manifests/paper-nine.txt the slopes differ by 0.7 % in
- * the mean from those of all cells, at the worst by 14 % (alum-bronze's blue, where all cells do not converge and the sample does).
+ * The paper's regression of each channel on the measured achromatic value. The fields carry colour, so these six numbers are a
+ * summary here: a sample gives them in a twentieth of the time. On the nine surrogates of manifests/paper-nine.txt the slopes
+ * differ by 0.7 % in the mean from those of all cells, at the worst by 14 % (alum-bronze's blue, where all cells do not converge
+ * and the sample does).
  */
 bp_status spectral_survey_colour(const struct spectral_survey *sample, struct colour_fit colour[3], bp_error *error)
 {

@@ -11,7 +11,8 @@ uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end
 	return end > first ? planes - 1 - (end - 1 - first) / period : planes;
 }
 
-float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest)
+/* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
+static float level_value(const struct spectral_model *model, int32_t level, uint32_t lowest)
 {
 	const uint32_t magnitude = (uint32_t)(level < 0 ? -level : level) >> lowest << lowest;
 	float value;
@@ -45,7 +46,7 @@ bp_status spectral_terms_make(const struct spectral_model *model, const struct s
 				out->start[unit++] = n;
 			lowest = spectral_lowest_plane(model->planes, p, model->end[layers - 1], field, harmonic);
 		}
-		const float value = spectral_level_value(model, level.level, lowest);
+		const float value = level_value(model, level.level, lowest);
 		if (value != 0)
 			out->term[n++] = spectrum_term_make(inverse, row, harmonic, value);
 	}

@@ -81,7 +81,7 @@ static void KERNEL(spectral_moments)(const float *const x[3], size_t n, double s
 
 /*
  * n cells of one channel. The limits are those of the numbers as integers, which is the same for positive ones and takes half the
- * instructions; negative ones become 0. No field is NaN: coefficients are within 2^98, and the sums of them far within the range of float.
+ * instructions; negative ones become 0. No field is NaN: coefficients are within 2^98, their sums far within the range of float.
  */
 static inline
 	__attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
@@ -98,26 +98,12 @@ static inline
 	}
 }
 
-static void KERNEL(spectral_values)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-                                    const float rotation[3][3], float most, float *const rgb[3], size_t rgb_stride)
+static void KERNEL(spectral_values)(const float *const field[3], size_t width, const float base[3], const float rotation[3][3],
+                                    float most, float *const rgb[3])
 {
-	enum { BLOCK = 16 };
-
-	for (size_t i = 0; i < rows; i++)
-		for (int c = 0; c < 3; c++) {
-			const float weight[3] = {rotation[0][c], rotation[1][c], rotation[2][c]};
-			float *out = rgb[c] + i * rgb_stride;
-			/* Rows of a block lie apart, which no processor foresees: without this the stores take twice the time of all the rest. */
-			if (i + 16 < rows) {
-				__builtin_prefetch(out + 16 * rgb_stride, 1);
-				__builtin_prefetch(out + 16 * rgb_stride + BLOCK - 1, 1);
-				__builtin_prefetch(field[c] + (i + 16) * stride);
-			}
-			if (width >= BLOCK && stride == BLOCK)
-				KERNEL(channel_values)(field, i * stride, BLOCK, base[c], weight, most, out);
-			else
-				KERNEL(channel_values)(field, i * stride, width, base[c], weight, most, out);
-		}
+	for (int c = 0; c < 3; c++)
+		KERNEL(channel_values)(field, 0, width, base[c], (const float[3]){rotation[0][c], rotation[1][c], rotation[2][c]}, most,
+		                       rgb[c]);
 }
 
 typedef uint16_t KERNEL(codes8) __attribute__((vector_size(16)));
@@ -150,8 +136,8 @@ static inline __attribute__((always_inline)) void KERNEL(codes_interleave)(const
 	memcpy(out + 16, &third, sizeof third);
 }
 
-static void KERNEL(spectral_codes)(const float *const field[3], size_t rows, size_t width, size_t stride, const float base[3],
-                                   const float rotation[3][3], float most, int channels, uint16_t *out, size_t out_stride)
+static void KERNEL(spectral_codes)(const float *const field[3], size_t width, const float base[3], const float rotation[3][3],
+                                   float most, int channels, uint16_t *out)
 {
 	enum { BLOCK = 16 };
 	const float weight[3][3] = {{rotation[0][0], rotation[1][0], rotation[2][0]},
@@ -160,33 +146,26 @@ static void KERNEL(spectral_codes)(const float *const field[3], size_t rows, siz
 	float value[3][BLOCK];
 	uint16_t code[3 * BLOCK], mixed[3 * BLOCK];
 
-	for (size_t i = 0; i < rows; i++)
-		for (size_t k = 0; k < width; k += BLOCK) {
-			const size_t count = width - k < BLOCK ? width - k : BLOCK;
-			uint16_t *to = out + i * out_stride + (size_t)channels * k;
-			if (stride == BLOCK && i + 16 < rows) { /* see spectral_values */
-				__builtin_prefetch(to + 16 * out_stride, 1);
-				__builtin_prefetch(to + 16 * out_stride + BLOCK * (size_t)channels - 1, 1);
-				for (int f = 0; f < 3; f++)
-					__builtin_prefetch(field[f] + (i + 16) * stride);
-			}
+	for (size_t k = 0; k < width; k += BLOCK) {
+		const size_t count = width - k < BLOCK ? width - k : BLOCK;
+		uint16_t *to = out + (size_t)channels * k;
+		for (int c = 0; c < 3; c++)
+			KERNEL(channel_values)(field, k, BLOCK, base[c], weight[c], most, value[c]);
+		if (channels == 3) {
 			for (int c = 0; c < 3; c++)
-				KERNEL(channel_values)(field, i * stride + k, BLOCK, base[c], weight[c], most, value[c]);
-			if (channels == 3) {
-				for (int c = 0; c < 3; c++)
-					KERNEL(channel_codes)(value[c], code + c * BLOCK);
-				KERNEL(codes_interleave)(code, BLOCK, mixed);
-				KERNEL(codes_interleave)(code + 8, BLOCK, mixed + 24);
-			} else {
-				for (int n = 0; n < BLOCK; n++)
-					value[0][n] = (value[0][n] + value[1][n] + value[2][n]) * (1.0f / 3);
-				KERNEL(channel_codes)(value[0], mixed);
-			}
-			if (count == BLOCK && channels == 3)
-				memcpy(to, mixed, sizeof mixed);
-			else
-				memcpy(to, mixed, count * (size_t)channels * sizeof *mixed);
+				KERNEL(channel_codes)(value[c], code + c * BLOCK);
+			KERNEL(codes_interleave)(code, BLOCK, mixed);
+			KERNEL(codes_interleave)(code + 8, BLOCK, mixed + 24);
+		} else {
+			for (int n = 0; n < BLOCK; n++)
+				value[0][n] = (value[0][n] + value[1][n] + value[2][n]) * (1.0f / 3);
+			KERNEL(channel_codes)(value[0], mixed);
 		}
+		if (count == BLOCK && channels == 3)
+			memcpy(to, mixed, sizeof mixed);
+		else
+			memcpy(to, mixed, count * (size_t)channels * sizeof *mixed);
+	}
 }
 
 static void KERNEL(spectral_rotate)(float *const x[3], size_t n, const float m[3][3])

@@ -8,7 +8,7 @@
 #include "error.h"
 #include "model/math/fast_math.h"
 
-/* In octaves, -1/2 log2 of the mean of (2 + cos w)/3 over the details of steps 0, 1 and 2, rounded to sixteenths; 0 for coarser ones. */
+/* In octaves, -1/2 log2 of the mean of (2 + cos w)/3 over the details of steps 0, 1, 2, in sixteenths; 0 for coarser ones. */
 enum { GRADED_STEPS = 3 };
 static const float GRADE[GRADED_STEPS] = {9 / 16.0f, 3 / 16.0f, 1 / 16.0f};
 

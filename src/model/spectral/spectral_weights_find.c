@@ -67,7 +67,7 @@ static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 	const struct centres *c = s->centres;
 	const uint32_t every = d.phi_d < ROW_SPARSE ? 1 : EVERY;
 	const size_t row = lattice_index(d, i, j, 0);
-	/* Pairs of directions in a cell, up to a factor: d omega_h d omega_i = sin theta_h d theta_h 4 cos theta_d sin theta_d d theta_d d phi_d. */
+	/* Pairs of directions in a cell, but for a factor: sin theta_h d theta_h cos theta_d sin theta_d d theta_d d phi_d. */
 	const double directions = (i + 0.5) / d.theta_h * c->sin_h[i] * 2 * c->sin_d[j] * c->cos_d[j];
 	struct region *region = s->regions ? &s->regions[i * EDGE / d.theta_h * EDGE + j * EDGE / d.theta_d] : NULL;
 	double radiance[SAMPLES_MAX], other[SAMPLES_MAX],

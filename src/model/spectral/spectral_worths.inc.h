@@ -14,7 +14,7 @@ static void KERNEL(spectral_worths)(const double *radiance, size_t n, const stru
 	for (size_t l = 0; l < light_count; l++) {
 		const double light = lights[l].radiance, count = lights[l].count;
 		for (size_t i = 0; i < n; i++) {
-			/* A pixel x + ambient, of which x is this light's; the curve is a power of 1/2.4. Above white there is nothing to see. */
+			/* A pixel x + ambient, x being this light's; the curve is a power of 1/2.4. Above white there is nothing to see. */
 			const double x = radiance[i] * light, share = x + 0.02 * light;
 			const double slope = fast_exp2(2 * (1 / 2.4 - 1) * fast_log2(x + ambient)), dimmed = slope / (x * x);
 			out[i] += count * (x > 1 ? dimmed : slope) * share * share;

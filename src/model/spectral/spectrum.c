@@ -12,7 +12,7 @@ struct spectrum {
 	uint32_t levels;
 	struct cosines *cosines;
 	float *scratch; /* for the wavelets */
-	uint16_t *span; /* NULL: rows are whole */
+	uint16_t *span; /* of every row */
 	struct span_cosines *cut;
 };
 
@@ -28,24 +28,22 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
 
 bp_status spectrum_create(struct lattice_dims dims, float limit, struct spectrum **out, bp_error *error)
 {
-	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d;
+	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d, rows = (size_t)dims.theta_h * dims.theta_d;
 	struct spectrum *t = calloc(1, sizeof *t);
 
 	if (!t)
 		return error_memory(error, sizeof *t);
 	t->dims = dims;
 	t->levels = spectrum_levels(dims.theta_h, dims.theta_d);
+	t->span = malloc(rows * sizeof *t->span);
 	t->scratch = malloc(12 * longest * sizeof(float));
 	bp_status status =
 		t->scratch ? cosines_create(dims.phi_d, &t->cosines, error) : error_memory(error, 12 * longest * sizeof(float));
-	if (!status && limit > 0) {
-		t->span = malloc((size_t)dims.theta_h * dims.theta_d * sizeof *t->span);
-		status = t->span ? BP_OK : error_memory(error, (size_t)dims.theta_h * dims.theta_d * sizeof *t->span);
-		if (!status) {
-			spans_find(dims, limit, t->span);
-			status =
-				span_cosines_create(dims.phi_d, t->span, (size_t)dims.theta_h * dims.theta_d, dims.phi_d, false, &t->cut, error);
-		}
+	if (!status && !t->span)
+		status = error_memory(error, rows * sizeof *t->span);
+	if (!status) {
+		spans_find(dims, limit, t->span);
+		status = span_cosines_create(dims.phi_d, t->span, rows, dims.phi_d, false, &t->cut, error);
 	}
 	if (status)
 		spectrum_free(t);
@@ -74,7 +72,7 @@ static void rows_forward(struct spectrum *t, float *table, float base)
 
 	for (size_t r = 0, run; r < rows; r += run) {
 		run = 0;
-		while (r + run < rows && (!t->span || t->span[r + run] == p))
+		while (r + run < rows && t->span[r + run] == p)
 			run++;
 		cosines_forward(t->cosines, table + r * p, run, base);
 		for (; r + run < rows && t->span[r + run] < p; run++)

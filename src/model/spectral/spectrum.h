@@ -30,7 +30,7 @@ struct spectrum; /* tables and scratch for tables of one size; one thread at a t
 bp_status spectrum_create(struct lattice_dims dims, float limit, struct spectrum **out, bp_error *error);
 void spectrum_free(struct spectrum *spectrum); /* NULL is allowed */
 
-/* The rows' spans (spans.h), [theta_h theta_d]; NULL where they are whole. The spectrum's own. */
+/* The rows' spans (spans.h), [theta_h theta_d]. The spectrum's own. */
 const uint16_t *spectrum_spans(const struct spectrum *spectrum);
 
 /* Levels of the wavelet: as long as the shorter axis keeps at least 8 coarse cells, each level halving it (rounding up). */

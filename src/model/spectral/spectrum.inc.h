@@ -9,8 +9,8 @@ typedef float KERNEL(floats8_unaligned) __attribute__((vector_size(32), aligned(
 #define FLOATS8_OF(p) ((KERNEL(floats8))(*(const KERNEL(floats8_unaligned) *)(p)))
 
 /*
- * `rows` rows times 8 * vectors columns, both constants where this is inlined, and their product at most 8: the sums stay in registers.
- * The sum over k runs in ascending order.
+ * `rows` rows times 8 * vectors columns, both constants where this is inlined, and their product at most 8: the sums stay in
+ * registers. The sum over k runs in ascending order.
  */
 static inline __attribute__((always_inline)) void KERNEL(product_part)(const float *x, size_t in_stride, size_t rows,
                                                                        size_t count, const float *matrix, size_t columns,
@@ -67,8 +67,9 @@ static void KERNEL(span_unfold)(const float *sum, const float *difference, size_
 #define CDF97_D 0.443506852043971f
 
 /*
- * One step along a line of n >= 2 vectors, `stride` floats apart: the four lifting steps in one pass, each a place behind the one before;
- * x[-1] is x[1], x[n] is x[n - 2]. Low coefficients go where their line has been read, high ones to scratch and then behind them.
+ * One step along a line of n >= 2 vectors, `stride` floats apart: the four lifting steps in one pass, each a place behind the one
+ * before; x[-1] is x[1], x[n] is x[n - 2]. Low coefficients go where their line has been read, high ones to scratch and then
+ * behind them.
  */
 static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(float *x, size_t n, size_t stride, float *scratch)
 {

@@ -1,14 +1,10 @@
-#include "cosines.h"
 #include "spectrum_inverse.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
-#include "spectral_kernels.h"
 
-/* One axis of `here` coefficients of one step, coarse ones first: where the i-th belongs among them, and its gain in that step. */
+/* One axis of `here` coefficients of one step, coarse ones first: the place of the i-th among them, and its gain in that step. */
 static uint32_t step_place(uint32_t i, uint32_t here, float *gain)
 {
 	const uint32_t low = (here + 1) / 2;
@@ -25,7 +21,7 @@ static void places_fill(struct spectrum_inverse *t)
 
 	for (uint32_t i = 0; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			/* The coarsest step whose coefficients reach so far has it among its own; the last one's low ones are of the coarsest band. */
+			/* The coarsest step whose coefficients reach so far has it; the last one's low ones are of the coarsest band. */
 			uint32_t l = 0;
 			while (l < t->levels && i < spectrum_extent(d.theta_h, l + 1) && j < spectrum_extent(d.theta_d, l + 1))
 				l++;
@@ -52,17 +48,13 @@ bp_status spectrum_inverse_create(struct lattice_dims d, struct spectrum_inverse
 	t->place = malloc(rows * sizeof *t->place);
 	t->gain = malloc(rows * sizeof *t->gain);
 	t->harmonic = malloc(d.phi_d * sizeof *t->harmonic);
-	t->cosine = malloc(4 * (size_t)d.phi_d * sizeof *t->cosine);
-	if (!t->place || !t->gain || !t->harmonic || !t->cosine) {
+	if (!t->place || !t->gain || !t->harmonic) {
 		spectrum_inverse_free(t);
 		return error_memory(error, rows * sizeof *t->place);
 	}
 	places_fill(t);
 	for (uint32_t m = 0; m < d.phi_d; m++)
 		t->harmonic[m] = 1;
-	const double scale = sqrt(2.0 / d.phi_d);
-	for (uint32_t a = 0; a < 4 * d.phi_d; a++)
-		t->cosine[a] = (float)(scale * cosines_exact(a, d.phi_d));
 	*out = t;
 	return BP_OK;
 }
@@ -74,43 +66,5 @@ void spectrum_inverse_free(struct spectrum_inverse *t)
 	free(t->place);
 	free(t->gain);
 	free(t->harmonic);
-	free(t->cosine);
 	free(t);
-}
-
-void spectrum_inverse_cosines(const struct spectrum_inverse *t, uint32_t m, uint32_t first, uint32_t every, uint32_t count,
-                              float *out)
-{
-	const uint32_t period = 4 * t->dims.phi_d, step = 2 * m * every % period;
-	uint32_t a = (uint32_t)((uint64_t)m * (2 * first + 1) % period);
-
-	for (uint32_t n = 0; n < count; n++) {
-		out[n] = t->cosine[a];
-		a += step;
-		a -= a >= period ? period : 0;
-	}
-	if (m == 0) {
-		const float constant = (float)sqrt(1.0 / t->dims.phi_d);
-		for (uint32_t n = 0; n < count; n++)
-			out[n] = constant;
-	}
-}
-
-void spectrum_inverse_block(const struct spectrum_inverse *t, const struct spectrum_term *terms, const uint32_t *start,
-                            uint32_t first, float *plane)
-{
-	const struct spectral_kernels *kernels = spectral_kernels_get();
-	const struct lattice_dims d = t->dims;
-	float cosine[SPECTRUM_BLOCK];
-
-	memset(plane, 0, (size_t)d.theta_h * d.theta_d * SPECTRUM_BLOCK * sizeof *plane);
-	if (start[d.phi_d] == start[0])
-		return;
-	for (uint32_t m = 0; m < d.phi_d; m++) {
-		if (start[m + 1] == start[m])
-			continue;
-		spectrum_inverse_cosines(t, m, first, 1, SPECTRUM_BLOCK, cosine);
-		kernels->spectrum_spread(terms + start[m], start[m + 1] - start[m], cosine, plane);
-	}
-	kernels->cdf97_plane(plane, d.theta_h, d.theta_d, t->levels, 0);
 }

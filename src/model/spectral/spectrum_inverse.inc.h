@@ -1,16 +1,5 @@
-/* spectrum_inverse.inc.h: planes of SPECTRUM_BLOCK = 16 values per row of phi_d. See spectral_kernels.h and spectrum_inverse.h. */
+/* spectrum_inverse.inc.h: planes of SPECTRUM_BLOCK = 16 values a row of phi_d. See spectral_kernels.h and spectrum_inverse.h. */
 #include "spectrum_inverse.h"
-
-static void KERNEL(spectrum_spread)(const struct spectrum_term *terms, size_t count, const float *cosine, float *plane)
-{
-	const KERNEL(floats8) low = FLOATS8_OF(cosine), high = FLOATS8_OF(cosine + 8);
-
-	for (size_t i = 0; i < count; i++) {
-		float *row = plane + (size_t)terms[i].place * SPECTRUM_BLOCK;
-		FLOATS8_AT(row) = FLOATS8_OF(row) + terms[i].value * low;
-		FLOATS8_AT(row + 8) = FLOATS8_OF(row + 8) + terms[i].value * high;
-	}
-}
 
 /*
  * One inverse step along a line of n >= 3 vectors, `stride` floats apart, the gains being in them: the four lifting steps in one

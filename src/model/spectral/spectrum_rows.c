@@ -13,8 +13,8 @@ enum { STEP = 8 }; /* lanes of a kind are a multiple of it */
 _Static_assert((int)SPAN_ROWS >= (int)SPECTRUM_BLOCK && SPECTRUM_BLOCK % STEP == 0, "rows asked for at once have room");
 
 /*
- * A field after the wavelets: planes of the rows that are wanted, [plane][row][SPECTRUM_BLOCK], their lanes first of even harmonics, then
- * of odd ones, of either kind up to the last with a term.
+ * A field after the wavelets: planes of the rows that are wanted, [plane][row][SPECTRUM_BLOCK], their lanes first of even
+ * harmonics, then of odd ones, of either kind up to the last with a term.
  */
 struct lanes {
 	float *value;

@@ -1,8 +1,8 @@
 /*
- * spectrum_rows.h: tables from spectra whose rows are cut at the horizon (spans.h), of which most coefficients are 0.
+ * spectrum_rows.h: tables from spectra, their rows cut or whole (spans.h), of which most coefficients are 0.
  *
- * Rows of different spans have different cosines, so the wavelets come first, on planes of SPECTRUM_BLOCK harmonics, of those that are in
- * use; then the cosines, row by row, up to the last harmonic that is not 0 there.
+ * Rows of different spans have different cosines, so the wavelets come first, on planes of SPECTRUM_BLOCK harmonics, of those
+ * that are in use; then the cosines, row by row, up to the last harmonic that is not 0 there.
  */
 #ifndef MODEL_SPECTRAL_SPECTRUM_ROWS_H
 #define MODEL_SPECTRAL_SPECTRUM_ROWS_H
@@ -13,7 +13,7 @@ enum { SPECTRUM_FIELDS = 3 };
 
 struct spectrum_rows; /* of up to SPECTRUM_FIELDS fields; one thread at a time */
 
-/* half: every second row along theta_h and theta_d, every second cell of them. No field has a term of harmonic `harmonics` or above. limit: spans.h. */
+/* half: every second row along theta_h and theta_d, every second cell of them. limit: spans.h. Fields have up to `harmonics`. */
 bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, float limit, uint32_t harmonics, bool half,
                                struct spectrum_rows **out, bp_error *error);
 void spectrum_rows_free(struct spectrum_rows *rows); /* NULL is allowed */
@@ -25,7 +25,7 @@ bp_status spectrum_rows_field(struct spectrum_rows *rows, int field, const struc
 /* The cells of the rows first..first + count - 1 of those that are wanted, at most SPECTRUM_BLOCK of them, `stride` apart. */
 void spectrum_rows_cells(struct spectrum_rows *rows, int field, uint32_t first, uint32_t count, float *out, size_t stride);
 
-/* Row r of those that are wanted: its cells *first..*first + *count - 1 hold all there is; those on either side repeat the one beside them. */
+/* Row r of those wanted: cells *first..*first + *count - 1 hold all there is; those on either side repeat the one beside them. */
 void spectrum_rows_seen(const struct spectrum_rows *rows, uint32_t r, uint32_t *first, uint32_t *count);
 
 #endif

@@ -15,10 +15,11 @@ static float dark_of(double largest)
 	return (float)(dark < 0x1p-11 ? fmax(dark, 0x1p-31) : 0x1p-11);
 }
 
+/* `per` is infinite where the range of shares is next to nothing; then the lowest, no number, is 0. */
 static uint32_t share_code(float share, float base, float per)
 {
-	float code = (share - base) * per + 0.5f;
-	return (uint32_t)(code < 0 ? 0 : code > 4095 ? 4095 : (int32_t)code);
+	const float code = (share - base) * per + 0.5f;
+	return (uint32_t)(int32_t)(code > 0 ? code < 4095 ? code : 4095 : 0);
 }
 
 /* The first block of row (i, j) of phi_d; the next ones are two blocks apart. */
@@ -52,10 +53,7 @@ static void places_fill(struct table *t)
 static void shares_fill(struct table *t, uint32_t blocks, const float *const knots[2], const float low[2], const float high[2])
 {
 	const size_t rows = (size_t)t->dims.theta_h * t->dims.theta_d;
-	/* Below this a range is nothing, and its reciprocal might be infinite. */
-	const float least = 0x1p-100f;
-	const float per[2] = {high[0] - low[0] > least ? 4095 / (high[0] - low[0]) : 0,
-	                      high[1] - low[1] > least ? 4095 / (high[1] - low[1]) : 0};
+	const float per[2] = {4095 / (high[0] - low[0]), 4095 / (high[1] - low[1])};
 	const float *knot[2] = {knots[0], knots[1]};
 
 	for (size_t r = 0; r < rows; r++) {

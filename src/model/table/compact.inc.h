@@ -62,8 +62,7 @@ static inline uint32_t KERNEL(load16)(const uint8_t *at)
 }
 
 /*
- * Lanes of eight hold two values of each of the four rows: those at two cells along phi_d, or two codes. The first byte of two is the low
- * one.
+ * Lanes of eight hold two values of each of the four rows: those at two cells along phi_d, or two codes. The low byte is first.
  */
 static inline void KERNEL(compact_residuals)(const struct compact_view *v, f32x8 *out)
 {

@@ -22,7 +22,7 @@ struct compact_hats {
 
 void compact_hats_make(uint32_t width, uint32_t half, struct compact_hats *out);
 
-/* A row as the blocks want it: `padded` values, those past the row's end being its first ones again; CELLS_MAX more may be read. */
+/* A row for the blocks: `padded` values, those past the row's end being its first ones again; CELLS_MAX more may be read. */
 struct compact_row {
 	float *root;     /* fourth root of the mean of the channels, in [0, 1] */
 	float *share[2]; /* R and B as shares of the sum; 1/3 where the cell is black */
@@ -40,8 +40,8 @@ struct compact_rows_plan {
 };
 
 /*
- * A row of values in the compact form, its first block at `block`, but for the shares' codes: three of R and three of B for every block
- * go to knots, as they are. For any processor, and for those with AVX2 (math/kernels.h): the same bits.
+ * A row of values in the compact form, its first block at `block`, but for the shares' codes: three of R and three of B for every
+ * block go to knots, as they are. For any processor, and for those with AVX2 (math/kernels.h): the same bits.
  */
 typedef void compact_row_fn(const struct compact_rows_plan *plan, const float *const rgb[3], uint8_t *block,
                             float *const knots[2]);

@@ -54,8 +54,8 @@ static inline float quarter_turns_polynomial(float q)
 }
 
 /*
- * scale (2/pi) atan2(sqrt(y), sqrt(x)) for x, y >= 0; 0 for (0, 0). From squares, so that the root runs beside the polynomial, not
- * before the division.
+ * scale (2/pi) atan2(sqrt(y), sqrt(x)) for x, y >= 0; 0 for (0, 0). From squares, so that the root runs beside the polynomial,
+ * not before the division.
  */
 static inline float quarter_turns_of_squares(float y, float x, float scale)
 {
@@ -161,8 +161,9 @@ static inline struct lattice_point direction_point(const struct direction_argume
 }
 
 /*
- * One pair of directions; false, and nothing set, where direction_usable says so. As vectors of which *squared begins with h^2, and
- * *out is (meaningless, d, p, 0): for the kernels. Few operations, because a single look-up waits for all of them; and what does not need h need not wait for its root.
+ * One pair of directions; false, and nothing set, where direction_usable says so. As vectors of which *squared begins with h^2,
+ * and *out is (meaningless, d, p, 0): for the kernels. Few operations, because a single look-up waits for all of them; and what
+ * does not need h need not wait for its root.
  */
 static inline bool direction_locate_squared(f32x4 scale, const float wi[3], const float wo[3], f32x4 *squared, f32x4 *out)
 {

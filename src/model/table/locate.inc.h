@@ -55,7 +55,7 @@ static inline struct cell_x4 KERNEL(cell_nearest)(const struct table *t, f32x4 s
 	return (struct cell_x4){(uint32_t)h[0], (uint32_t)cell[1], (uint32_t)cell[2], none, none};
 }
 
-/* Pairs that are located together: the loops vectorise over them, and their cells are on the way to the cache while others are evaluated. */
+/* Pairs that are located together: loops vectorise over them, and their cells are on the way while others are evaluated. */
 enum { BLOCK = 64 };
 
 struct lookups {
@@ -155,7 +155,7 @@ __attribute__((always_inline)) static inline void KERNEL(fetch)(const struct tab
 	__builtin_prefetch(cell + step_h + step_d);
 }
 
-/* What one memory form and number of channels is made of. Constant where it is used, so that the calls below become direct and inline. */
+/* What one memory form and number of channels is made of. Constant where it is used, so that the calls below become inline. */
 struct KERNEL(form) {
 	void (*one)(const struct table *t, const struct cell_x4 *at, float rgb[3]);
 	struct lookup (*find)(const struct table *t, struct cell cell);             /* for a loop that vectorises */

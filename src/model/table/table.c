@@ -1,5 +1,4 @@
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
@@ -64,7 +63,7 @@ static bp_status expanded_fill(struct table *t, const struct expansion *e, float
 	bp_status status = expanded_alloc(t, error);
 	if (status)
 		return status;
-	/* The unit is a power of two times the expansion's: values keep their bits, and a table may be made before its largest is known. */
+	/* A power of two times the expansion's unit: values keep their bits, and a table may be made before its largest is known. */
 	int exponent;
 	frexpf(largest, &exponent);
 	const float factor = largest >= 0x1p-125f ? ldexpf(1, -exponent) : 0;

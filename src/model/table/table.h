@@ -33,15 +33,15 @@ struct table; /* immutable once built: any number of threads may evaluate it */
 /* channels: 3 (RGB), or 1: the mean of the three, given back in all of them. The expansion is not needed afterwards. */
 bp_status table_build(const struct expansion *expansion, enum table_form form, int channels, struct table **out, bp_error *error);
 /*
- * The same of all of a model's layers, or, with `half`, of every second value of it (model_expand_half), and quicker: of a decoded
- * spectral profile's expanded form no table of floats is made. BP_ERROR_ARGUMENT where there is no half.
+ * The same of all of a model's layers, or, with `half`, of every second value of it (model_expand_half), and quicker: of a
+ * decoded spectral profile's expanded form no table of floats is made. BP_ERROR_ARGUMENT where there is no half.
  */
 bp_status table_build_model(const struct model *model, bool half, enum table_form form, int channels, struct table **out,
                             bp_error *error);
 void table_free(struct table *table); /* NULL is allowed */
 size_t table_bytes(const struct table *table);
 
-/* How a compact table of three channels lies in memory (compact.h), for who looks values up elsewhere, as on a graphics processor. */
+/* How a compact table of three channels lies in memory (compact.h), for who looks values up elsewhere, as a shader does. */
 struct table_layout {
 	const uint8_t *blocks; /* inside the table */
 	size_t bytes;

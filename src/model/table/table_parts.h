@@ -29,7 +29,7 @@ struct table_place {         /* along phi_d, where the other is the next: */
 	float place;             /* compact: of the first neighbour, between the two share codes */
 };
 
-/* Where the first value stands, in cells: at the centre of its own, or, in a table of every second value, of the first of the two that are one. */
+/* Where the first value stands, in cells: at its own centre, or, where every second value is left, at the first of its two. */
 #define CENTRE 0.5f
 #define CENTRE_OF_HALF 0.25f
 
@@ -48,7 +48,7 @@ struct table {
 	/* compact only */
 	uint32_t width, width_reciprocal, half, block_bytes; /* cells of a block, 65536/width rounded up; cells between share codes */
 	float half_reciprocal;
-	/* (R, G, B, 0) in 1/sr = red sum times [0] + blue sum times [1] + sum of the means times [2]: of codes and means, with their weights */
+	/* (R, G, B, 0) in 1/sr = sum of red codes times [0] + of blue ones times [1] + of means times [2], all weighted */
 	f32x4 mix[3];
 
 	uint8_t *store;                   /* the cells, TABLE_SLACK_BYTES that may be read and mean nothing, then: */

@@ -69,10 +69,9 @@ static bp_status archive_write(struct build *build, bool *written, bp_error *err
 	struct archive_writer *writer = NULL;
 	uint8_t *record = NULL;
 	size_t room = 0;
-	bp_status status;
 
 	items_sort(&build->items);
-	status = archive_writer_open(build->options->output, &writer, error);
+	bp_status status = archive_writer_open(build->options->output, &writer, error);
 	for (size_t i = 0; i < build->items.count && !status; i++) {
 		const struct item *item = &build->items.item[i];
 		if (item->state != ITEM_PACKED)
@@ -163,11 +162,11 @@ static void build_prepare_and_work(struct build *build)
 	int wake_fd;
 
 	if (output_look(build, false, &error)) {
-		build_stop(build, options->output, NULL, &error);
+		build_stop(build, options->output, &error);
 		return;
 	}
 	if (options->manifest && manifest_read(options->manifest, &build->manifest, &error)) {
-		build_stop(build, options->manifest, NULL, &error);
+		build_stop(build, options->manifest, &error);
 		return;
 	}
 	build_inputs_collect(build);
@@ -180,11 +179,11 @@ static void build_prepare_and_work(struct build *build)
 	    (build->options->strict && !totals_whole(&build->totals)))
 		return;
 	if (output_look(build, true, &error) || previous_open(build, &error) || records_open(build, &error)) {
-		build_stop(build, options->output, NULL, &error);
+		build_stop(build, options->output, &error);
 		return;
 	}
 	if (interrupt_install(&wake_fd, &error)) {
-		build_stop(build, NULL, NULL, &error);
+		build_stop(build, NULL, &error);
 		return;
 	}
 	unsigned count = options->workers;
@@ -200,7 +199,7 @@ static void build_prepare_and_work(struct build *build)
 	                               .result_user = build,
 	                               .wake_fd = wake_fd};
 	if (workers_start(&pool, &build->workers, &error)) {
-		build_stop(build, NULL, NULL, &error);
+		build_stop(build, NULL, &error);
 		return;
 	}
 	progress_start(!options->quiet);
@@ -233,7 +232,7 @@ int build_run(const struct build_options *options)
 	bool whole = totals_whole(&build.totals);
 	if (build_goes_on(&build) && (build.totals.packed > 0 || shard_is_empty(&build)) && (whole || !options->strict)) {
 		if (archive_write(&build, &written, &error))
-			build_stop(&build, options->output, NULL, &error);
+			build_stop(&build, options->output, &error);
 	}
 	build.totals.seconds = clock_seconds() - start;
 	int signal_number = written ? 0 : interrupt_signal();

@@ -54,7 +54,7 @@ static bool is_wanted(void *user, const char *name)
 	return (entry || build->manifest.count == 0) && build_shard_has(build->options, name);
 }
 
-/* Files by name; members of a container where it stands first, one after the other: whoever goes back in it reads it from the start. */
+/* Files by name; members of a container where it stands first, in their order: who goes back in it reads it from the start. */
 static int order_compare(const void *a, const void *b, void *user)
 {
 	const struct source_item *items = user, *x = &items[*(const size_t *)a], *y = &items[*(const size_t *)b];
@@ -90,20 +90,20 @@ void build_inputs_collect(struct build *build)
 
 	if (source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count, &options, &build->sources,
 	                &error)) {
-		build_stop(build, NULL, NULL, &error);
+		build_stop(build, NULL, &error);
 		return;
 	}
 	build->scanned = true;
 	for (size_t i = 0; i < build->sources.item_count; i++) {
 		if (items_add(&build->items, &build->sources.items[i], false, &error)) {
-			build_stop(build, NULL, NULL, &error);
+			build_stop(build, NULL, &error);
 			return;
 		}
 		build->bytes_total += item_weight(&build->sources.items[i]);
 	}
 	build->listed_count = build->items.count;
 	if (order_make(build, &error))
-		build_stop(build, NULL, NULL, &error);
+		build_stop(build, NULL, &error);
 }
 
 /* Opens streams until one has a next member. */
@@ -127,7 +127,7 @@ static bool member_find(struct build *build, struct source_item *member)
 		if (status && member->name) {
 			const size_t number = build->items.count;
 			if (items_add(&build->items, member, true, &error))
-				build_stop(build, NULL, NULL, &error);
+				build_stop(build, NULL, &error);
 			else
 				outcomes_refuse(build, number, &error);
 		} else if (status) {
@@ -191,7 +191,7 @@ bool build_inputs_next(struct build *build, struct job *job)
 			workers_wait(build->workers, -1);
 		size_t number = build->items.count;
 		if (items_add(&build->items, &member, true, &error)) {
-			build_stop(build, NULL, NULL, &error);
+			build_stop(build, NULL, &error);
 			return false;
 		}
 		if (slot < 0)

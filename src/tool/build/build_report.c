@@ -35,7 +35,7 @@ static void holes_describe(const struct outcome *outcome, char text[WARNING_BYTE
 			holes->count, what, black);
 }
 
-/* What is odd about a material that was packed nevertheless; the first `*said` of them are faults of the file, the rest stands in --json. */
+/* What is odd about a material that was packed nevertheless; the first `*said` are faults of the file, the rest is in --json. */
 static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES], int *said)
 {
 	int count = 0;

@@ -6,9 +6,9 @@
 
 bool build_goes_on(const struct build *build) { return !build->stopped && !interrupt_signal(); }
 
-void build_stop(struct build *build, const char *file, const char *material, const bp_error *error)
+void build_stop(struct build *build, const char *file, const bp_error *error)
 {
-	report_error(file, material, error);
+	report_error(file, NULL, error);
 	build->stopped = true;
 }
 

@@ -42,11 +42,11 @@ struct build {
 bool build_goes_on(const struct build *build);
 
 /* Reports an error that ends the build. */
-void build_stop(struct build *build, const char *file, const char *material, const bp_error *error);
+void build_stop(struct build *build, const char *file, const bp_error *error);
 
 /*
- * Whether a material of this name belongs to the shard: name_shard. Names alone decide, so the shards of any count are disjoint and
- * together all there is.
+ * Whether a material of this name belongs to the shard: name_shard. Names alone decide, so the shards of any count are disjoint
+ * and together all there is.
  */
 bool build_shard_has(const struct build_options *options, const char *name);
 

@@ -62,16 +62,15 @@ static void checksum_add(void *user, const void *bytes, size_t count)
 	stage_enter(before);
 }
 
-/* The material's record: from what an interrupted build left, from the older archive, from the file itself, or, as nearly always, by fitting. */
+/* The material's record: from an interrupted build, the older archive, from the file itself, or, nearly always, by fitting. */
 static bp_status record_get(const struct build *build, const char *name, const struct lattice *lattice,
                             const struct carried *carried, struct delivery *delivery, uint8_t **record, size_t *record_bytes,
                             bp_error *error)
 {
 	const struct fit_options *options = &build->options->fit;
-	bp_status status;
 
 	delivery->origin = RECORD_RESUMED;
-	status = journal_take(&build->journal, name, &delivery->source, options, record, record_bytes, error);
+	bp_status status = journal_take(&build->journal, name, &delivery->source, options, record, record_bytes, error);
 	if (status || *record)
 		return status;
 	delivery->origin = RECORD_REUSED;

@@ -8,7 +8,6 @@
 #include "tool/whole_file.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

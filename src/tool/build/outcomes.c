@@ -95,7 +95,7 @@ static struct outcome *outcome_create(struct build *build)
 	if (!outcome) {
 		bp_error error;
 		error_memory(&error, sizeof *outcome);
-		build_stop(build, NULL, NULL, &error);
+		build_stop(build, NULL, &error);
 	}
 	return outcome;
 }
@@ -128,7 +128,7 @@ void outcomes_take_result(void *user, const struct job_result *result)
 	if (!outcome->error.status) {
 		if (record_store(build, item, outcome, result->record + sizeof(struct delivery), &error)) {
 			free(outcome);
-			build_stop(build, build->options->output, NULL, &error);
+			build_stop(build, build->options->output, &error);
 			return;
 		}
 	}

@@ -33,12 +33,11 @@ static void room_free(struct decoded_room *room)
 
 static bp_status room_fit(struct decoded_room *room, const struct model *model, bp_error *error)
 {
-	bp_status status;
 	if (room->below && lattice_dims_equal(room->expansion.dims, model->dims) && room->limit == model->horizon_limit)
 		return BP_OK;
 	room_free(room);
 	size_t cells = lattice_cells(model->dims);
-	status = expansion_alloc(model->dims, &room->expansion, error);
+	bp_status status = expansion_alloc(model->dims, &room->expansion, error);
 	if (status)
 		return status;
 	room->below = malloc(cells);
@@ -129,7 +128,6 @@ static bp_status json_write(const struct record_head *head, const struct origin 
                             bp_error *error)
 {
 	struct byte_buffer text = {0};
-	bp_status status;
 
 	FILE *memory = memory_stream_open(&text);
 	if (!memory)
@@ -139,7 +137,8 @@ static bp_status json_write(const struct record_head *head, const struct origin 
 	facts_full(&json, head, origin);
 	json_finish(&json);
 	fclose(memory);
-	status = text.failed ? error_memory(error, text.count) : output_file_write_whole(path, rule, text.bytes, text.count, error);
+	bp_status status =
+		text.failed ? error_memory(error, text.count) : output_file_write_whole(path, rule, text.bytes, text.count, error);
 	byte_buffer_free(&text);
 	return status;
 }

@@ -9,7 +9,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
 struct totals {
 	uint64_t materials, record_bytes, source_bytes, failed;

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
-/* All inputs stay open: ask for as many files as that takes, where the usual limit (1,024) is lower. Opening tells where it is not allowed. */
+/* All inputs stay open: asks for so many files where the usual limit (1,024) is lower. Opening tells where it is not allowed. */
 static void files_allow(size_t count)
 {
 	struct rlimit limit;
@@ -28,9 +28,8 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 	struct copy_totals totals = {0};
 	size_t failed = 0;
 	bp_error error;
-	int wake_fd;
 
-	if (interrupt_install(&wake_fd, &error) ||
+	if (interrupt_install(NULL, &error) ||
 	    archive_merge((const struct bp_archive *const *)archives, count, options, &totals, &failed, &error)) {
 		report_error(totals.reading ? paths[failed] : options->output, totals.damaged[0] ? totals.damaged : NULL, &error);
 		return EXIT_FAILED;

@@ -7,7 +7,6 @@
 #include "render/picture.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct render_options {
 	enum lighting lighting;
@@ -44,13 +43,11 @@ static int material_render(const struct render_options *options, const struct ma
 {
 	struct lookup_table table = {0};
 	struct sphere_image image = {0};
-	const struct lookup_table *tables[1] = {&table};
-	struct sphere_image *images[1] = {&image};
 	bp_error error;
 	int code = EXIT_FAILED;
 
 	if (table_make(material, &table, &error) || sphere_image_alloc(options->size, &image, &error) ||
-	    sphere_render(options->lighting, tables, 1, images, &error)) {
+	    sphere_render(options->lighting, &table, &image, &error)) {
 		report_error(material->path, material->name, &error);
 	} else if (image_write(options, &image, &error)) {
 		report_error(NULL, NULL, &error); /* names the output */

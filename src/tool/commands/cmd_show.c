@@ -8,6 +8,8 @@
 #include "error.h"
 #include "merl/merl_file.h"
 #include "merl/sha256.h"
+#include "merl/source_kind.h"
+#include "render/comparison.h"
 #include "render/figure.h"
 
 #include <math.h>
@@ -58,9 +60,8 @@ static bool angles_take(const struct command *command, const struct option_rule 
 /* The measured file of a material in a folder: NAME.binary, or NAME.bsdf where that is what there is. malloc'ed. */
 static bp_status measured_path(const char *folder, const char *name, char **out, bp_error *error)
 {
-	static const char *const SUFFIXES[] = {"binary", "bsdf"};
-	for (size_t n = 0; n < sizeof SUFFIXES / sizeof *SUFFIXES; n++) {
-		if (asprintf(out, "%s/%s.%s", folder, name, SUFFIXES[n]) < 0)
+	for (size_t n = 0; SOURCE_SUFFIXES[n]; n++) {
+		if (asprintf(out, "%s/%s%s", folder, name, SOURCE_SUFFIXES[n]) < 0)
 			return error_memory(error, strlen(folder) + strlen(name));
 		if (access(*out, F_OK) == 0)
 			return BP_OK;
@@ -70,7 +71,7 @@ static bp_status measured_path(const char *folder, const char *name, char **out,
 	                 name);
 }
 
-/* The measured file that belongs to an archived material: the path itself, or that of its name in that folder. Another one than was packed is told. */
+/* The measured file of an archived material: the path, or that of its name in it. Another one than was packed is told. */
 static bp_status reference_read(const char *path, const struct record_head *head, struct lattice *out, bp_error *error)
 {
 	struct sha256 sha;
@@ -130,11 +131,8 @@ static bp_status show_measure(struct show *show, bp_error *error)
 		free(counting);
 		return status;
 	}
-	struct lattice_dims a = show->truth->dims, b = material->table.dims;
-	if (!lattice_dims_equal(a, b))
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "the measured lattice has %u x %u x %u cells, the decoded one %u x %u x %u", a.theta_h, a.theta_d,
-		                 a.phi_d, b.theta_h, b.theta_d, b.phi_d);
+	if (comparison_dims_check(show->truth->dims, material->table.dims, error))
+		return BP_ERROR_BAD_INPUT;
 	error_profile(show->truth, &material->table, show->error_after);
 	show->figure.error_after = show->error_after;
 	if (material->model->profile == PROFILE_PAPER) {

@@ -116,9 +116,8 @@ static int subset_write(struct subset *subset)
 {
 	struct copy_totals totals = {0};
 	bp_error error;
-	int wake_fd;
 
-	if (interrupt_install(&wake_fd, &error) ||
+	if (interrupt_install(NULL, &error) ||
 	    archive_subset(subset->archive, subset->index, subset->count, &subset->copy, &totals, &error)) {
 		report_error(totals.reading ? subset->path : subset->copy.output, totals.damaged[0] ? totals.damaged : NULL, &error);
 		return EXIT_FAILED;

@@ -1,8 +1,6 @@
 #include "compare.h"
 
-#include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "model/math/select.h"

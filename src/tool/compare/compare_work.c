@@ -88,12 +88,12 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 	struct sha256 sha;
 	uint8_t digest[32];
 	bp_error reason;
-	bp_status status;
 
 	(void)fd;
 	sha256_start(&sha);
-	status = source_item_read(item->source, &compare->cursor,
-	                          &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, &lattice, &reason);
+	bp_status status =
+		source_item_read(item->source, &compare->cursor,
+	                     &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, &lattice, &reason);
 	if (status != BP_OK) {
 		error_set(error, status, BP_NO_OFFSET, "%s: %s", item->source->path, reason.message);
 		goto out;

@@ -35,24 +35,9 @@ struct deviation_reference {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* The direction to a light from the point of the unit sphere whose normal is n; returns its irradiance at normal incidence. */
-static double light_from(const struct light *light, const double n[3], double to[3])
-{
-	if (!light->is_point) {
-		memcpy(to, light->at, sizeof light->at);
-		return light->weight;
-	}
-	for (int axis = 0; axis < 3; axis++)
-		to[axis] = light->at[axis] - n[axis];
-	const double square = dot(to, to);
-	for (int axis = 0; axis < 3; axis++)
-		to[axis] /= sqrt(square);
-	return light->weight / square;
-}
-
 /*
- * The pairs of one pixel: in a frame with the normal n, the viewer, who looks along -z, in its xz plane. Returns how many there are;
- * with pairs NULL it only counts.
+ * The pairs of one pixel: in a frame with the normal n, the viewer, who looks along -z, in its xz plane. Returns how many there
+ * are; with pairs NULL it only counts.
  */
 static size_t pixel_pairs(const double n[3], const struct light *lights, int light_count, uint32_t pixel, size_t first,
                           struct pairs *pairs, struct shaded *shaded)
@@ -63,8 +48,8 @@ static size_t pixel_pairs(const double n[3], const struct light *lights, int lig
 	size_t count = 0;
 	for (int k = 0; k < light_count; k++) {
 		double to[3];
-		const double weight = light_from(&lights[k], n, to), cosine = dot(to, n);
-		if (cosine <= 1e-3)
+		const double weight = sphere_light(&lights[k], n, to), cosine = dot(to, n);
+		if (cosine <= SPHERE_COSINE_ABOVE)
 			continue;
 		if (pairs) {
 			pairs_set(pairs, first + count, view, (const double[3]){dot(to, tangent), dot(to, level), cosine});
@@ -75,22 +60,16 @@ static size_t pixel_pairs(const double n[3], const struct light *lights, int lig
 	return count;
 }
 
-/* All pixels; marks those that are covered. With pairs NULL it only counts. */
-static size_t image_pairs(enum lighting lighting, struct sphere_image *image, struct pairs *pairs, struct shaded *shaded)
+/* All pixels. With pairs NULL it only counts. */
+static size_t image_pairs(enum lighting lighting, struct pairs *pairs, struct shaded *shaded)
 {
 	struct light lights[LIGHTS_MAX];
 	const int light_count = lights_make(lighting, lights);
 	size_t count = 0;
-	image->covered_count = 0;
-	for (uint32_t pixel = 0; pixel < SIZE * SIZE; pixel++) {
-		const double u = (pixel % SIZE + 0.5) / SIZE * 2 - 1, v = 1 - (pixel / SIZE + 0.5) / SIZE * 2, square = u * u + v * v;
-		image->covered[pixel] = square < 0.99;
-		if (!image->covered[pixel])
-			continue;
-		image->covered_count++;
-		const double n[3] = {u, v, sqrt(1 - square)};
-		count += pixel_pairs(n, lights, light_count, pixel, count, pairs, shaded);
-	}
+	double n[3];
+	for (uint32_t pixel = 0; pixel < SIZE * SIZE; pixel++)
+		if (sphere_normal(SIZE, pixel % SIZE, pixel / SIZE, n))
+			count += pixel_pairs(n, lights, light_count, pixel, count, pairs, shaded);
 	return count;
 }
 
@@ -101,14 +80,12 @@ static bp_status lighting_make(int n, const struct reflectance *reflectance, str
 	bp_status status = sphere_image_alloc(SIZE, image, error);
 	if (status)
 		return status;
-	image->unit = 1;
-	memset(image->rgb, 0, 3 * sizeof(float) * SIZE * SIZE);
-	const size_t count = image_pairs(LIT_BY[n], image, NULL, NULL);
+	const size_t count = image_pairs(LIT_BY[n], NULL, NULL);
 	struct pairs *pairs = &reference->pairs[n];
 	struct shaded *shaded = reference->shaded[n] = malloc(count * sizeof *shaded);
 	if (!pairs_alloc(count, pairs) || !shaded)
 		return error_memory(error, count * sizeof *shaded);
-	image_pairs(LIT_BY[n], image, pairs, shaded);
+	image_pairs(LIT_BY[n], pairs, shaded);
 	pairs_evaluate(pairs, reflectance);
 	for (size_t k = 0; k < count; k++)
 		for (int c = 0; c < 3; c++)
@@ -117,8 +94,8 @@ static bp_status lighting_make(int n, const struct reflectance *reflectance, str
 }
 
 /*
- * The albedo at one angle: midpoints in (u, v) of the half vector, which the lattice's cells are dense in as well. With m at u, v a
- * solid angle dm is 2 pi^2 u sin theta du dv, and that of w_o 4 <w_i, m> times it. Pairs beyond the horizon weigh 0.
+ * The albedo at one angle: midpoints in (u, v) of the half vector, which the lattice's cells are dense in as well. With m at u, v
+ * a solid angle dm is 2 pi^2 u sin theta du dv, and that of w_o 4 <w_i, m> times it. Pairs beyond the horizon weigh 0.
  */
 static bp_status albedo_make(int n, const struct reflectance *reflectance, struct deviation_reference *reference, bp_error *error)
 {
@@ -218,9 +195,6 @@ static bp_status sphere_deviation(int n, const struct deviation_reference *refer
                                   const void *exported, struct sphere_image *image, double *psnr, bp_error *error)
 {
 	struct psnr figure;
-	image->unit = 1;
-	image->covered_count = reference->image[n].covered_count;
-	memcpy(image->covered, reference->image[n].covered, SIZE * SIZE);
 	memset(image->rgb, 0, 3 * sizeof(float) * SIZE * SIZE);
 	exported_draw(&reference->pairs[n], reference->shaded[n], evaluate, exported, image->rgb);
 	const bp_status status = metrics_psnr(&reference->image[n], image, &figure, error);

@@ -28,8 +28,9 @@ uint64_t export_bytes_least(enum export_format format, bool spectral);
 enum { EXPORT_BYTES_MAX = 1 << 30 };
 
 /*
- * Appends the file of a material to *out: the smallest that deviation_suffices of, else that of at most most_bytes with the highest PSNR;
- * *deviation is the one it has. After a failure *out holds nothing of use. BP_ERROR_BAD_INPUT: values beyond what a float holds.
+ * Appends the file of a material to *out: the smallest that deviation_suffices of, else that of at most most_bytes with the
+ * highest PSNR; *deviation is the one it has. After a failure *out holds nothing of use. BP_ERROR_BAD_INPUT: values beyond what a
+ * float holds.
  */
 bp_status export_material(const struct model *model, const char *name, const struct export_options *options,
                           struct byte_buffer *out, struct deviation *deviation, bp_error *error);

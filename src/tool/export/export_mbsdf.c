@@ -1,8 +1,8 @@
 /*
  * A table of f over (theta_in, theta_out, phi), the azimuth between both, equally spaced: theta in [0, pi/2), phi in [0, pi].
- * A value stands for its cell's centre, as the texture look-up of the MDL SDK has it, which is linear between centres and keeps the value beyond
- * the outer ones; and it takes the mean of both orders of the directions. Isotropic materials that are not their own mirror image
- * become the mean of both.
+ * A value stands for its cell's centre, as the texture look-up of the MDL SDK has it, which is linear between centres and keeps
+ * the value beyond the outer ones; and it takes the mean of both orders of the directions. Isotropic materials that are not their
+ * own mirror image become the mean of both.
  */
 #include "export_mbsdf.h"
 
@@ -98,7 +98,7 @@ static void evaluate(const void *exported, const float wi[3], const float wo[3],
 	}
 }
 
-/* The smallest grid that reaches the figure and fits; else the best that fits. Its values are the caller's to free in any case. */
+/* The smallest grid that reaches the figure and fits; else the best that fits. The caller frees its values in any case. */
 static bp_status grid_choose(const struct reflectance *reflectance, uint64_t most_bytes, struct grid *out,
                              struct deviation *deviation, bp_error *error)
 {

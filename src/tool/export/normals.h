@@ -20,7 +20,7 @@ struct normals {
 	double *soft, *soft_area; /* the same of D's square root: a wider distribution around the same peak */
 };
 
-/* profile[count]: f(w, w), or what stands for it, at the nodes: not negative, in any unit; all 0: a uniform D. normals_free *out. */
+/* profile[count]: f(w, w), or what stands for it, at the nodes: in any unit, 0 or more; all 0: a uniform D. normals_free *out. */
 bp_status normals_make(uint32_t count, const double *profile, struct normals *out, bp_error *error);
 void normals_free(struct normals *normals); /* a zeroed struct is allowed */
 

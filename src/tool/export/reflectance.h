@@ -6,8 +6,8 @@
 #include <stddef.h>
 
 /*
- * f in 1/sr for `count` pairs of unit vectors in separate arrays of components, not negative; 0 where one is not above the horizon:
- * what table_evaluate_batch gives.
+ * f in 1/sr for `count` pairs of unit vectors in separate arrays of components, not negative; 0 where one is not above the
+ * horizon: what table_evaluate_batch gives.
  */
 struct reflectance {
 	void (*evaluate)(const void *user, size_t count, const float *const wi[3], const float *const wo[3], float *const rgb[3]);

@@ -4,8 +4,8 @@ const float UPSAMPLING_WAVELENGTHS[UPSAMPLING_COUNT] = {380, 405, 430, 455, 480,
                                                         580, 605, 630, 655, 680, 705, 730, 755};
 
 /*
- * r(l) and g(l) at these; b(l) is what is missing from 1. Found by minimising under those conditions; the sums behind them run from
- * 380 to 780 nm by 1 nm. tests/mitsuba_files.py looks them up in Mitsuba's own observer and illuminant.
+ * r(l) and g(l) at these; b(l) is what is missing from 1. Found by minimising under those conditions; the sums behind them run
+ * from 380 to 780 nm by 1 nm. tests/mitsuba_files.py looks them up in Mitsuba's own observer and illuminant.
  */
 static const double RED[UPSAMPLING_COUNT] = {0.200854, 0.122827, 0.045984, 0, 0, 0, 0, 0, 0.117390, 0.928373, 1, 1, 1, 1, 1, 1};
 static const double GREEN[UPSAMPLING_COUNT] = {0, 0, 0, 0, 0.204397, 0.898204, 1, 1, 0.826811, 0.067391, 0, 0, 0, 0, 0, 0};

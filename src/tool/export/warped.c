@@ -20,8 +20,8 @@ static const double LUMINANCE_FLOOR = 1e-4;
 static const double ANGLES_POWER = 0.8;
 
 /*
- * What stands for f(w, w) at the nodes: at each theta_h the mean of f over theta_d, weighted by cos theta_d, with phi_d = 90 degrees,
- * where both directions are above the horizon whatever theta_d. Retroreflection alone (theta_d = 0) misses lobes that
+ * What stands for f(w, w) at the nodes: at each theta_h the mean of f over theta_d, weighted by cos theta_d, with phi_d = 90
+ * degrees, where both directions are above the horizon whatever theta_d. Retroreflection alone (theta_d = 0) misses lobes that
  * rise towards grazing angles, and is what measurements know least about.
  */
 static bp_status profile_make(const struct reflectance *reflectance, double *profile, bp_error *error)
@@ -50,8 +50,8 @@ static bp_status profile_make(const struct reflectance *reflectance, double *pro
 }
 
 /*
- * The nodes of one slice: pairs of directions, and factor[size^2], which makes of f what `rgb` holds: cos theta_o 4 sigma/D; 0 where w_o is not
- * above the horizon.
+ * The nodes of one slice: pairs of directions, and factor[size^2], which makes of f what `rgb` holds: cos theta_o 4 sigma/D; 0
+ * where w_o is not above the horizon.
  */
 static void nodes_place(const struct warped *warped, uint32_t angle, struct pairs *pairs, double *factor)
 {

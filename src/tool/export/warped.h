@@ -33,15 +33,15 @@ struct warped {
 };
 
 /*
- * Evaluates the material at all nodes, and settles these (warped_settle). warped_free in any case. BP_ERROR_BAD_INPUT where a value is beyond what a
- * float holds.
+ * Evaluates the material at all nodes, and settles these (warped_settle). warped_free in any case. BP_ERROR_BAD_INPUT where a
+ * value is beyond what a float holds.
  */
 bp_status warped_make(const struct reflectance *reflectance, const struct warped_shape *shape, struct warped *out,
                       bp_error *error);
 /*
- * A straight line between two points of a curve lies on one side of it; what readers interpolate is too bright where f is hollow. Adds to each sample
- * the mean of what is missing around it, at four points of each cell between samples, four times over, weighted as the reader's interpolation weighs the sample:
- * for a function of second degree that leaves a mean of 0.
+ * A straight line between two points of a curve lies on one side of it; what readers interpolate is too bright where f is hollow.
+ * Adds to each sample the mean of what is missing around it, at four points of each cell between samples, four times over,
+ * weighted as the reader's interpolation weighs the sample: for a function of second degree that leaves a mean of 0.
  */
 bp_status warped_settle(const struct reflectance *reflectance, struct warped *warped, bp_error *error);
 void warped_free(struct warped *warped); /* a zeroed struct is allowed */

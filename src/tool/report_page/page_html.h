@@ -7,7 +7,7 @@
 
 #include "render/picture.h"
 
-/* A text for element content or a quoted attribute: & < > " ' escaped; bytes that are no UTF-8 and control characters become U+FFFD. */
+/* A text for element content or a quoted attribute: & < > " ' escaped; what is no UTF-8 and control characters become U+FFFD. */
 void html_text(FILE *out, const char *text);
 
 /* The same within <bdi>, so that a right-to-left name turns nothing around it. */

@@ -183,7 +183,7 @@ static bp_status spheres_write(FILE *out, const struct subject *subject, bp_erro
 	return status;
 }
 
-/* The plane theta_h x theta_d at one phi_d, theta_h to the right on the lattice's own scale, theta_d upwards; exposed by its 90th percentile. */
+/* The plane theta_h x theta_d at one phi_d, theta_h to the right as on the lattice, theta_d upwards; by its 90th percentile. */
 static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t k, bp_error *error)
 {
 	const struct expansion *table = &subject->table;
@@ -289,7 +289,6 @@ static bp_status details_write(FILE *out, const struct subject *subject, bp_erro
 {
 	const uint32_t half = subject->head.dims.phi_d / 2;
 	struct table *table;
-	bp_status status;
 	fprintf(out, "<section class=material id=m%llu data-index=%llu><h3>", (unsigned long long)subject->item->entry.ordinal,
 	        (unsigned long long)subject->item->entry.ordinal);
 	html_name(out, subject->head.name);
@@ -299,7 +298,7 @@ static bp_status details_write(FILE *out, const struct subject *subject, bp_erro
 		html_text(out, subject->missing);
 		fputs("</p>", out);
 	}
-	status = spheres_write(out, subject, error);
+	bp_status status = spheres_write(out, subject, error);
 	if (status == BP_OK)
 		status = table_build(&subject->table, TABLE_EXPANDED, 3, &table, error);
 	if (status != BP_OK)
@@ -343,13 +342,12 @@ bp_status page_work(void *user, const struct job *job, int fd, uint8_t **record,
 	struct page_result result;
 	struct byte_buffer text = {0};
 	FILE *out = NULL;
-	bp_status status;
 
 	(void)fd;
 	memset(&result, 0, sizeof result); /* padding too: it travels between processes as bytes */
 	if (page->measured && !subject.item->source)
 		snprintf(subject.missing, sizeof subject.missing, "not compared: there is no measured file of that name");
-	status = material_decode(page->archive, &subject.item->entry, &subject.head, &subject.model, &subject.table, error);
+	bp_status status = material_decode(page->archive, &subject.item->entry, &subject.head, &subject.model, &subject.table, error);
 	if (status == BP_OK)
 		status = subject.item->source ? measured_draw(page, &subject, error) : decoded_draw(page, &subject, error);
 	if (status != BP_OK)
