@@ -9,7 +9,7 @@
 
 #include "model/spectral/spectral.h"
 
-#define TRELLIS_BIT 0.09f /* squared steps; 0.07 and 0.1 give as much, VARIANTS.md */
+#define TRELLIS_BIT 0.09f /* squared steps; VARIANTS.md, "Quantisation and the bits of levels" */
 
 /* A coefficient that may have a level. */
 struct trellis_cell {
