@@ -657,7 +657,7 @@ def inverse_lift(x):
     return z
 
 
-SPECTRAL_KINDS = {(16, 0, 3), (16, 0, 4), (16, 0, 5), (17, 1, 2)}
+SPECTRAL_KINDS = {(16, 0, version) for version in range(3, 9)} | {(17, 1, 2)}
 
 
 def spans(h, d, p, limit):
@@ -720,22 +720,29 @@ def weight_factors(hs, ds, weights, graded):
     return [[factor(i, j) for j in range(ds[0])] for i in range(hs[0])]
 
 
+NEXT_STATE = ((0, 1), (4, 5), (1, 0), (5, 4), (6, 7), (3, 2), (2, 3), (7, 6))  # by the parity of a level that is not 0
+
+
 def decode_spectral(record, layers):
     h, d, p = record.dims
     wanted = record.load_list(layers, SPECTRAL_KINDS)
-    cut = bool(wanted) and wanted[0][0][2] >= 4
-    graded = cut and wanted[0][0][2] == 5
+    version = wanted[0][0][2] if wanted else 3
+    dependent, form = version >= 6, (version - 3) % 3
+    cut, graded = form > 0, form == 2
     demand([(s[0], s[3]) for s, _ in wanted] == [(16, 0)] + [(17, l) for l in range(layers)], "corrupt", record.base, "sections of fields and planes")
     data = wanted[0][1]
-    demand(len(data) >= 80 if graded else len(data) == 176, "corrupt", record.base, "the fields' bytes")
-    unit, *rotation, step, c0, c1, c2, count = struct.unpack_from("<d12fffffI", data)
+    more = 4 * dependent
+    demand(len(data) >= 80 + more if graded else len(data) == 176 + more, "corrupt", record.base, "the fields' bytes")
+    unit, *rotation, step = struct.unpack_from("<d13f", data)
+    *centres, c3, count = struct.unpack_from("<4fI" if dependent else "<3fI", data, 60)
+    c0, c1, c2 = centres if dependent else (centres[0], 0.0, centres[1])
     base, rotation = rotation[:3], rotation[3:]
     demand(2.0 ** -1022 <= unit <= 2.0 ** 999 and all(abs(x) <= 64 for x in base) and
            all(abs(r) <= 1.001 for r in rotation) and
-           0 < step <= 2.0 ** 40 and all(abs(c) <= 1 for c in (c0, c1, c2)) and count <= 24, "corrupt", record.base, "fields")
-    limit, = struct.unpack_from("<f", data, 76) if graded else (2.0 ** -30,)
+           0 < step <= 2.0 ** 40 and all(abs(c) <= 1 for c in (c0, c1, c2, c3)) and count <= 24, "corrupt", record.base, "fields")
+    limit, = struct.unpack_from("<f", data, 76 + more) if graded else (2.0 ** -30,)
     demand(2.0 ** -30 <= limit < 1, "corrupt", record.base, "the rows' limit")
-    weights = coded_weights(data[80:], record) if graded else data[76:]
+    weights = coded_weights(data[80 + more:], record) if graded else data[76 + more:]
     planes, end = Planes(record.dims, count), 0
     for _, data in wanted[1:]:
         demand(len(data) >= 4, "corrupt", record.base, "planes")
@@ -752,14 +759,23 @@ def decode_spectral(record, layers):
     fields = []
     for f in range(3):
         spectra = [[[0.0] * d for _ in range(h)] for _ in range(p)]
-        for (g, m, b, y, x), k in planes.known.items():
-            if g != f or end <= f * p + m:
+        state, last = 0, None
+        # in the order of coding: band by band, block by block
+        places = sorted(place for place in planes.known if place[0] == f)
+        places.sort(key=lambda at: (*at[1:3], at[3] >> 3, at[4] >> 3, at[3], at[4]))
+        for g, m, b, y, x in places:
+            k, state, last = planes.known[g, m, b, y, x], state if m == last else 0, m
+            if end <= f * p + m:
                 continue
             r = count - 1 - (end - 1 - (f * p + m)) // (3 * p)
             a = (k >> 2) >> r << r
             if a:
                 negative = planes.sign[g, m, b, y, x] == 2
-                value = (a + (c2 * 2 ** r if r else c0 if a == 1 else c1)) * step
+                second = state >> 2
+                value = a + (c3 * 2 ** r - 0.25 * dependent if r else (c2 if a > 1 else c1 if second else c0) - 0.5 * second)
+                if dependent and not r:
+                    state = NEXT_STATE[state][a & 1]
+                value *= step
                 y, x = planes.bands[b].y0 + y, planes.bands[b].x0 + x
                 value *= factor[y][x] * harmonic[m]
                 spectra[m][y][x] = -value if negative else value

@@ -91,9 +91,9 @@ static void the_bytes_of_all_planes_are_foreseen_before_the_lowest(void **state)
 		struct range_encoder encoder;
 		struct mixed_coder coder = {.encoder = &encoder, .tables = mixer_tables_get()};
 		double taken[RATE_PLANES] = {0};
-		float centre[2];
-		assert_int_equal(planes_quantise(planes, model->coefficient, step, 0.4f, NULL), BP_OK);
-		planes_start(planes, planes_settle(planes, 0.4f, centre));
+		float centre[3];
+		assert_int_equal(planes_quantise(planes, model->coefficient, step, NULL), BP_OK);
+		planes_start(planes, planes_settle(planes, centre));
 		range_encoder_start(&encoder, &bytes);
 		for (uint32_t unit = 0; unit < planes_units(planes); unit++) {
 			const uint32_t plane = planes_unit_plane(planes, unit);

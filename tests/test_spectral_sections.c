@@ -64,13 +64,14 @@ static void numbers_of_the_fields_are_refused_beyond_their_limits(void **state)
 		{60, 1, 1.000001f, "a centre is"},
 		{64, -1, -1.000001f, "a centre is"},
 		{68, 1, INFINITY, "a centre is"},
+		{72, 0, 1.000001f, "a centre is"},
 		{60, 0, NAN, "a centre is"},
 		{8, 0, NAN, "a base is"},
 		{56, 1, NAN, "the step"},
-		{76, 0x1p-30f, 0x1.fffffep-31f, "rows are cut at"},
-		{76, 0x1.fffffep-1f, 1, "rows are cut at"},
-		{76, 0.5f, NAN, "rows are cut at"},
-		{76, 0.5f, -0.5f, "rows are cut at"},
+		{80, 0x1p-30f, 0x1.fffffep-31f, "rows are cut at"},
+		{80, 0x1.fffffep-1f, 1, "rows are cut at"},
+		{80, 0.5f, NAN, "rows are cut at"},
+		{80, 0.5f, -0.5f, "rows are cut at"},
 	};
 	static const double UNITS[2][2] = {{SPECTRAL_UNIT_LEAST, SPECTRAL_UNIT_LEAST / 2},
 	                                   {SPECTRAL_UNIT_MOST, SPECTRAL_UNIT_MOST * 2}};
@@ -88,7 +89,7 @@ static void numbers_of_the_fields_are_refused_beyond_their_limits(void **state)
 		expect_words(error.message, "the unit is");
 	}
 	const uint32_t planes = SPECTRAL_PLANES_MAX + 1;
-	assert_int_equal(decoded_with(0, 72, &planes, 4, &error), BP_ERROR_CORRUPT);
+	assert_int_equal(decoded_with(0, 76, &planes, 4, &error), BP_ERROR_CORRUPT);
 	expect_words(error.message, "25 planes");
 }
 

@@ -74,7 +74,7 @@ static void make_spectral(const char *path) { vector_spectral(path, (struct latt
 FIXTURE void vector_weights_begin(struct record_head *head, struct section_list *sections)
 {
 	vector_spectral_encode("material", (struct lattice_dims){21, 20, 4}, 1, 2000, 0, head, sections);
-	assert_int_equal(sections->entry[0].version, 5);
+	assert_int_equal(sections->entry[0].version, 8);
 }
 
 static void make_spectral_weights(const char *path)
@@ -85,7 +85,26 @@ static void make_spectral_weights(const char *path)
 	vector_spectral_write(path, &head, &sections);
 }
 
-enum { VECTOR_LIMIT_AT = 76, VECTOR_WEIGHTS_AT = 80 };
+enum { VECTOR_LIMIT_AT = 80, VECTOR_WEIGHTS_AT = 84 };
+
+/* As versions before codec version 7 wrote it: one quantiser, and no centre of the second. */
+FIXTURE void vector_undependent(struct section_list *sections)
+{
+	enum { CENTRE_SECOND_AT = 64 };
+	struct byte_buffer *fields = &sections->bytes[0];
+	memmove(fields->bytes + CENTRE_SECOND_AT, fields->bytes + CENTRE_SECOND_AT + 4, fields->count - CENTRE_SECOND_AT - 4);
+	fields->count -= 4;
+	sections->entry[0].version -= 3;
+}
+
+static void make_spectral_single(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_weights_begin(&head, &sections);
+	vector_undependent(&sections);
+	vector_spectral_write(path, &head, &sections);
+}
 
 /* As codec version 5 wrote it: 100 weights as they are, and no factors by frequency. */
 static void make_spectral_plain(const char *path)
@@ -93,8 +112,9 @@ static void make_spectral_plain(const char *path)
 	struct record_head head;
 	struct section_list sections;
 	vector_weights_begin(&head, &sections);
+	vector_undependent(&sections);
 	sections.entry[0].version = 4;
-	sections.bytes[0].count = VECTOR_LIMIT_AT;
+	sections.bytes[0].count = VECTOR_LIMIT_AT - 4;
 	for (uint32_t n = 0; n < 100; n++)
 		write_u8(&sections.bytes[0], (uint8_t)(n * 3 % 64));
 	vector_spectral_write(path, &head, &sections);
@@ -171,6 +191,16 @@ static void make_spectral_whole(const char *path)
 	vector_spectral_write(path, &head, &sections);
 }
 
+/* The same as codec version 4 wrote it. */
+static void make_spectral_whole_single(const char *path)
+{
+	struct record_head head;
+	struct section_list sections;
+	vector_spectral_encode("material", (struct lattice_dims){16, 15, 6}, 1, 1500, 0.0625, &head, &sections);
+	vector_undependent(&sections);
+	vector_spectral_write(path, &head, &sections);
+}
+
 /* One number of a section changed, under a checksum that holds. */
 FIXTURE void vector_spectral_changed(const char *path, int section, size_t at, uint32_t value)
 {
@@ -181,7 +211,7 @@ FIXTURE void vector_spectral_changed(const char *path, int section, size_t at, u
 	vector_spectral_write(path, &head, &sections);
 }
 
-static void make_spectral_planes(const char *path) { vector_spectral_changed(path, 0, 72, 25); }
+static void make_spectral_planes(const char *path) { vector_spectral_changed(path, 0, 76, 25); }
 static void make_spectral_unit(const char *path) { vector_spectral_changed(path, 0, 4, 0x7e700000); }
 static void make_spectral_unit_least(const char *path) { vector_spectral_changed(path, 0, 4, 0); }
 static void make_spectral_end(const char *path) { vector_spectral_changed(path, 1, 0, 3 * 4 * 24 + 1); }

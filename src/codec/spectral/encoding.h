@@ -1,8 +1,8 @@
 /*
  * encoding.h: bit planes of a fitted model within a budget, in layers.
  *
- * The budget is met in two ways. A step is sought whose planes take a little more than there is room for, then the lowest
- * plane is cut off at a harmonic. Either alone would do; together they need one or two attempts and waste next to nothing.
+ * The budget is met in two ways. A step is sought whose planes take about what there is room for; where they take more, the lowest plane is
+ * cut off at a harmonic. A percent that is cut off costs more than one that is left over, so what is aimed at is near the room itself.
  */
 #ifndef CODEC_SPECTRAL_ENCODING_H
 #define CODEC_SPECTRAL_ENCODING_H
@@ -18,7 +18,7 @@ struct encoding {
 	uint32_t limit[LAYERS_MAX]; /* record bytes at the end of every layer; the last is the budget */
 	const struct watch *watch;  /* told after every unit */
 	/* What it leaves: */
-	float step, centre[2];
+	float step, centre[3];
 	struct byte_buffer stream[LAYERS_MAX]; /* the contents of the sections */
 	uint32_t end[LAYERS_MAX];              /* the unit before which a layer ends */
 	uint64_t bytes;                        /* of the record */

@@ -31,8 +31,10 @@ bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **o
 	p->pool_room = (uint32_t)(encoder || slots < POOL_START ? slots : POOL_START);
 	p->pool = memory_alloc(p->pool_room * sizeof *p->pool);
 	p->levels = encoder ? memory_alloc(slots * sizeof *p->levels) : NULL;
+	p->cells = encoder ? memory_alloc((size_t)dims.theta_h * dims.theta_d * sizeof *p->cells) : NULL;
+	p->costs = encoder ? memory_alloc((size_t)dims.theta_h * dims.theta_d * sizeof *p->costs) : NULL;
 	p->contexts = malloc(sizeof *p->contexts);
-	if (!at || !p->pool || (encoder && !p->levels) || !p->contexts) {
+	if (!at || !p->pool || (encoder && !(p->levels && p->cells && p->costs)) || !p->contexts) {
 		planes_free(p);
 		return error_memory(error, slots * sizeof *p->pool);
 	}
@@ -79,6 +81,8 @@ void planes_free(struct planes *p)
 	free(p->block);
 	free(p->pool);
 	free(p->levels);
+	free(p->cells);
+	free(p->costs);
 	free(p->candidates);
 	free(p->contexts);
 	free(p);

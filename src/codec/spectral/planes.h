@@ -10,6 +10,7 @@
 #include "model/spectral/spectral.h"
 #include "codec/bit_mixer.h"
 #include "bands.h"
+#include "trellis.h"
 
 enum { BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
 
@@ -24,11 +25,15 @@ struct plane_block {
 };
 enum { NEAR_MOST = 2047 }; /* more is as much: the largest size of all sums begins at 646, and half of a sum counts as well */
 
-/* Encoder: the levels of one block, and where in its interval the coefficient lies: 256 (size / step + rounding - |level|). */
+/* Encoder: the levels of one block, and what they are chosen by. */
 struct level_block {
 	int32_t level[BLOCK_CELLS];
-	uint8_t over[BLOCK_CELLS];
+	uint8_t over[BLOCK_CELLS]; /* of a candidate: 256 (size / step + 0.4 - |level|) before levels are settled */
+	uint8_t near[BLOCK_CELLS]; /* |level|, at most LEVEL_NEAR_MOST */
+	uint64_t there, negative;  /* bit k: cell k holds a candidate; its coefficient is below 0 */
 };
+enum { LEVEL_NEAR_MOST = 255 };
+#define LEVEL_ROUNDING 0.4f
 
 /* Encoder: a coefficient that may have a level. */
 struct candidate {
@@ -55,6 +60,8 @@ struct planes {
 	uint8_t *top[3];
 	struct level_block *levels;
 	uint32_t levels_count;
+	struct trellis_cell *cells; /* room for those of a harmonic */
+	struct trellis_costs *costs;
 	/* Encoder only: all coefficients of at least candidate_least, so that every further step looks at these alone. */
 	struct candidate *candidates;
 	uint32_t candidate_count;
@@ -70,17 +77,16 @@ void planes_free(struct planes *planes); /* NULL is allowed */
 void planes_start(struct planes *planes, uint32_t count);
 
 /*
- * Encoder: level = floor(|coefficient| / step + rounding), with the coefficient's sign. The coefficients must be the same every
- * time. planes_settle must follow.
+ * Encoder: level = floor(|coefficient| / step + 0.4), with the coefficient's sign: near what planes_settle, which must follow, makes of it.
+ * The coefficients must be the same every time.
  */
-bp_status planes_quantise(struct planes *planes, float *const coefficient[3], float step, float rounding, bp_error *error);
+bp_status planes_quantise(struct planes *planes, float *const coefficient[3], float step, bp_error *error);
 
 /*
- * Counts the planes that the levels need and returns them. Levels of 1 with little around them become 0 before, the
- * less there is the larger they may be, as they cost most to place. `rounding` is that of planes_quantise.
- * centre[0], centre[1]: the mean of |coefficient|/step - |level| over levels of 1 and over larger ones, to 1/256.
+ * Chooses the levels, harmonic by harmonic (trellis.h), and returns the number of planes that they need. centre[0], [1] and [2]: the mean
+ * of |coefficient|/step less what the level stands for over levels of 1 in the first quantiser, of 1 in the second, and larger ones.
  */
-uint32_t planes_settle(struct planes *planes, float rounding, float centre[2]);
+uint32_t planes_settle(struct planes *planes, float centre[3]);
 
 static inline uint32_t planes_units(const struct planes *planes) { return planes->planes * 3 * planes->dims.phi_d; }
 static inline uint32_t planes_unit_plane(const struct planes *planes, uint32_t unit)

@@ -9,7 +9,8 @@
 #include "planes.h"
 
 enum { LANES = 16 };
-static const float CANDIDATES_FROM = 0.85f; /* of the least coefficient that a step does not make 0 */
+static const float LEAST = 0.45f;           /* of a step: what may become 1 in the second quantiser */
+static const float CANDIDATES_FROM = 0.85f; /* of the least coefficient that may have a level */
 
 /* Is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
 static inline int any_above(const float *x, uint32_t least_bits)
@@ -69,14 +70,14 @@ static bp_status candidates_find(struct planes *p, float *const coefficient[3], 
 	return status;
 }
 
-/* The coefficient's level, where it is not 0, in its block, which gets a place in the pool where it has none. */
-static inline void level_place(struct planes *p, const struct candidate *c, float inverse, float rounding)
+/* The coefficient's level, in its block, which gets a place in the pool where it has none and the level is not 0. */
+static inline void level_place(struct planes *p, const struct candidate *c, float inverse)
 {
-	const uint32_t most = (1u << SPECTRAL_PLANES_MAX) - 1;
+	const uint32_t most = (1u << SPECTRAL_PLANES_MAX) - 3; /* settling may add 2 */
 	const float size = fabsf(c->coefficient) * inverse;
-	uint32_t level = (uint32_t)(size + rounding), *slot = &p->level_slot[0][c->slot];
+	uint32_t level = (uint32_t)(size + LEVEL_ROUNDING), *slot = &p->level_slot[0][c->slot];
 
-	if (!level)
+	if (!level && !*slot)
 		return;
 	level = level < most ? level : most;
 	if (!*slot) {
@@ -85,7 +86,10 @@ static inline void level_place(struct planes *p, const struct candidate *c, floa
 	}
 	struct level_block *block = &p->levels[*slot];
 	block->level[c->place] = c->coefficient < 0 ? -(int32_t)level : (int32_t)level;
-	block->over[c->place] = (uint8_t)fminf(256 * (size + rounding - (float)level), 255);
+	block->over[c->place] = (uint8_t)fminf(256 * (size + LEVEL_ROUNDING - (float)level), 255);
+	block->near[c->place] = (uint8_t)(level < LEVEL_NEAR_MOST ? level : LEVEL_NEAR_MOST);
+	block->there |= UINT64_C(1) << c->place;
+	block->negative |= (uint64_t)(c->coefficient < 0) << c->place;
 }
 
 static void levels_clear(struct planes *p)
@@ -94,9 +98,9 @@ static void levels_clear(struct planes *p)
 	memset(p->level_slot[0], 0, 3 * (size_t)(p->dims.phi_d + 4) * p->bands.blocks * sizeof *p->level_slot[0]);
 }
 
-bp_status planes_quantise(struct planes *p, float *const coefficient[3], float step, float rounding, bp_error *error)
+bp_status planes_quantise(struct planes *p, float *const coefficient[3], float step, bp_error *error)
 {
-	const float least = (1 - rounding) * step * 0.999f, inverse = 1 / step;
+	const float least = LEAST * step, inverse = 1 / step;
 
 	/* The next step is about as large. */
 	const bp_status status = p->candidate_count && least >= p->candidate_least
@@ -106,7 +110,14 @@ bp_status planes_quantise(struct planes *p, float *const coefficient[3], float s
 		return status;
 	levels_clear(p);
 	for (uint32_t n = 0; n < p->candidate_count; n++)
-		level_place(p, &p->candidates[n], inverse, rounding);
+		if (fabsf(p->candidates[n].coefficient) >= (1 - LEVEL_ROUNDING) * step)
+			level_place(p, &p->candidates[n], inverse);
+	/* Smaller ones only where something is. */
+	for (uint32_t n = 0; n < p->candidate_count; n++) {
+		const float size = fabsf(p->candidates[n].coefficient);
+		if (size >= least && size < (1 - LEVEL_ROUNDING) * step)
+			level_place(p, &p->candidates[n], inverse);
+	}
 	return BP_OK;
 }
 

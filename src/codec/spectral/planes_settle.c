@@ -1,125 +1,153 @@
 /*
  * planes_settle.c: which levels are coded, and what the coder must know of them as a whole.
  *
- * Thinning is a quantiser that knows what levels cost, cheaply: the limit below which a level of 1 is not worth its place falls
- * with the sum of the levels around it. (The limits were found on five surrogates; 0.19 dB at the same bytes, VARIANTS.md.)
+ * The levels of a harmonic are chosen together, by what they are likely to cost where they are: by the sum of the sizes around them, those
+ * of harmonics and fields that are chosen already as they are, the others as planes_quantise left them.
  */
 #include <stdlib.h>
+#include <string.h>
 
-#include "planes.h"
-
-/* In 1/100 of a step, by the sum of what is around: 0, 1, ... */
-enum { AROUND_MAX = 9 };
-static const uint8_t LIMIT[AROUND_MAX + 1] = {110, 95, 85, 80, 75, 70, 70, 65, 65, 60};
+#include "planes_row.h"
 
 /* The blocks that hold what is around a block's cells, but for the block itself. */
 struct surroundings {
-	const int32_t *before2, *before, *after, *after2, *other[2];
+	const uint8_t *before2, *before, *after, *after2, *other[2];
 };
 
-/* A block's sizes with a ring of zeros. */
-enum { RING_EDGE = BLOCK_EDGE + 2 };
-
-static void sizes_fill(const struct level_block *block, int32_t size[RING_EDGE][RING_EDGE])
+static inline cells8 cells_widen(const uint8_t *from)
 {
-	for (int x = 0; x < RING_EDGE; x++)
-		size[0][x] = size[RING_EDGE - 1][x] = 0;
-	for (int y = 0; y < BLOCK_EDGE; y++) {
-		size[y + 1][0] = size[y + 1][RING_EDGE - 1] = 0;
-		for (int x = 0; x < BLOCK_EDGE; x++)
-			size[y + 1][x + 1] = abs(block->level[y * BLOCK_EDGE + x]);
+	typedef uint8_t bytes8 __attribute__((vector_size(BLOCK_EDGE)));
+	bytes8 v;
+	memcpy(&v, from, sizeof v);
+	return __builtin_convertvector(v, cells8);
+}
+
+/* For each cell of a block: neighbours in the block and the nearest harmonics and other fields once, the harmonics of its own parity twice. */
+static void sums_around(const struct level_block *block, const struct surroundings *s, uint16_t sum[BLOCK_CELLS])
+{
+	uint16_t ring[BLOCK_EDGE + 2][VIEW_STRIDE] = {{0}};
+	for (uint32_t y = 0; y < BLOCK_EDGE; y++) {
+		const cells8 row = cells_widen(block->near + y * BLOCK_EDGE);
+		memcpy(&ring[y + 1][1], &row, sizeof row);
+	}
+	for (uint32_t y = 0, at = 0; y < BLOCK_EDGE; y++, at += BLOCK_EDGE) {
+		const uint16_t *here = &ring[y + 1][1], *up = here - VIEW_STRIDE, *down = here + VIEW_STRIDE;
+		const cells8 beside = (cells_load(here - 1) + cells_load(here + 1)) + (cells_load(up) + cells_load(down));
+		const cells8 corners = (cells_load(up - 1) + cells_load(up + 1)) + (cells_load(down - 1) + cells_load(down + 1));
+		const cells8 alike = 2 * (cells_widen(s->before2 + at) + cells_widen(s->after2 + at));
+		const cells8 others = (cells_widen(s->before + at) + cells_widen(s->after + at)) +
+		                      (cells_widen(s->other[0] + at) + cells_widen(s->other[1] + at));
+		const cells8 all = (beside + corners) + (alike + others);
+		memcpy(sum + at, &all, sizeof all);
 	}
 }
 
-static uint32_t around(const struct surroundings *s, const int32_t size[RING_EDGE][RING_EDGE], int k)
-{
-	const int y = k / BLOCK_EDGE, x = k % BLOCK_EDGE;
-	const int32_t *up = size[y] + x, *here = size[y + 1] + x, *down = size[y + 2] + x;
-	const int sum = 2 * (abs(s->before2[k]) + abs(s->after2[k])) + abs(s->before[k]) + abs(s->after[k]) + abs(s->other[0][k]) +
-	                abs(s->other[1][k]) + (up[0] + up[1] + up[2]) + (here[0] + here[2]) + (down[0] + down[1] + down[2]);
-	return sum < AROUND_MAX ? (uint32_t)sum : AROUND_MAX;
-}
-
-/* Bit k is 1 where level k is not 0. */
-static uint64_t levels_there(const struct level_block *block)
-{
-	uint64_t there = 0;
-	for (int y = 0; y < BLOCK_EDGE; y++) {
-		static const int32_t BIT[BLOCK_EDGE] = {1, 2, 4, 8, 16, 32, 64, 128};
-		int32_t row = 0;
-		for (int x = 0; x < BLOCK_EDGE; x++)
-			row |= block->level[y * BLOCK_EDGE + x] ? BIT[x] : 0;
-		there |= (uint64_t)row << y * BLOCK_EDGE;
-	}
-	return there;
-}
-
+/* What is told of all levels. */
 struct tally {
-	double excess[2];
-	uint64_t count[2];
-	uint32_t largest;
+	double beyond[3];
+	uint64_t count[3];
+	uint32_t sizes; /* or-ed */
 };
 
-/* Settles one block; returns the planes that it needs. */
-static uint8_t block_settle(struct level_block *block, const struct surroundings *s, const int limit[AROUND_MAX + 1],
-                            double rounding, struct tally *tally)
+/* The block's candidates as cells of the trellis; returns how many. */
+static uint32_t block_list(const struct level_block *block, uint32_t slot, const struct surroundings *s,
+                           const uint8_t class_of[TRELLIS_SUMS], struct trellis_cell *cells)
 {
-	int32_t size_of[RING_EDGE][RING_EDGE];
-	uint32_t sizes = 0;
-	sizes_fill(block, size_of);
-	for (uint64_t left = levels_there(block); left; left &= left - 1) {
-		const int k = __builtin_ctzll(left);
-		const uint32_t size = (uint32_t)abs(block->level[k]);
-		if (size == 1 && block->over[k] < limit[0] &&
-		    block->over[k] < limit[around(s, (const int32_t(*)[RING_EDGE])size_of, k)]) {
-			block->level[k] = size_of[k / BLOCK_EDGE + 1][k % BLOCK_EDGE + 1] = 0;
-			continue;
-		}
-		tally->excess[size > 1] += (block->over[k] + 0.5) / 256 - rounding;
-		tally->count[size > 1]++;
-		sizes |= size;
+	uint16_t sum[BLOCK_CELLS];
+	uint32_t n = 0;
+	sums_around(block, s, sum);
+	for (uint64_t left = block->there; left; left &= left - 1) {
+		const uint32_t k = (uint32_t)__builtin_ctzll(left);
+		cells[n++] = (struct trellis_cell){.level = (uint32_t)abs(block->level[k]),
+		                                   .beyond = ((float)block->over[k] + 0.5f) / 256 - LEVEL_ROUNDING,
+		                                   .place = slot * BLOCK_CELLS + k,
+		                                   .around = class_of[sum[k] < TRELLIS_SUMS ? sum[k] : TRELLIS_SUMS - 1]};
 	}
-	tally->largest |= sizes;
+	return n;
+}
+
+/* What was chosen, back in its block. */
+static void cell_settle(struct planes *p, const struct trellis_cell *cell, struct tally *tally)
+{
+	struct level_block *block = &p->levels[cell->place / BLOCK_CELLS];
+	const uint32_t k = cell->place % BLOCK_CELLS;
+	block->level[k] = block->negative >> k & 1 ? -(int32_t)cell->level : (int32_t)cell->level;
+	block->near[k] = (uint8_t)(cell->level < LEVEL_NEAR_MOST ? cell->level : LEVEL_NEAR_MOST);
+	if (cell->level) {
+		const uint32_t kind = cell->level > 1 ? 2 : cell->quantiser;
+		tally->beyond[kind] += (double)cell->beyond;
+		tally->count[kind]++;
+		tally->sizes |= cell->level;
+	}
+}
+
+/* The planes that a block needs. */
+static uint8_t block_top(const struct level_block *block)
+{
+	uint32_t sizes = 0;
+	for (uint32_t k = 0; k < BLOCK_CELLS; k++)
+		sizes |= (uint32_t)abs(block->level[k]);
 	return sizes ? (uint8_t)(32 - __builtin_clz(sizes)) : 0;
 }
 
-uint32_t planes_settle(struct planes *p, float rounding, float centre[2])
+/* The candidates of a harmonic, block by block in the order of coding; block0: of the harmonic's blocks. */
+static uint32_t harmonic_list(struct planes *p, uint32_t f, size_t block0, const uint8_t class_of[TRELLIS_SUMS])
 {
 	const ptrdiff_t next = (ptrdiff_t)p->bands.blocks;
-	struct tally tally = {0};
-	uint32_t planes = 0;
-	int limit[AROUND_MAX + 1];
-
-	for (int n = 0; n <= AROUND_MAX; n++)
-		limit[n] = (int)(256 * ((double)LIMIT[n] / 100 - 1 + (double)rounding) + 0.5);
-	for (uint32_t f = 0; f < 3; f++)
-		for (uint32_t m = 0; m < p->dims.phi_d; m++)
-			for (uint32_t b = 0; b < p->bands.count; b++) {
-				const struct band *band = &p->bands.band[b];
-				const size_t block0 = (size_t)(m + 2) * p->bands.blocks;
-				uint8_t *own = &p->top[f][block0 + band->block_at - band->block_stride - 1];
-				*own = 0;
-				for (uint32_t y = 0; y < band->block_rows; y++)
-					for (uint32_t x = 0; x < band->block_columns; x++) {
-						const size_t at = block0 + band->block_at + (size_t)y * band->block_stride + x;
-						const uint32_t *slot = p->level_slot[f] + at;
-						p->top[f][at] = 0;
-						if (!*slot)
-							continue;
-						const struct surroundings s = {
-							p->levels[slot[-2 * next]].level,
-							p->levels[slot[-next]].level,
-							p->levels[slot[next]].level,
-							p->levels[slot[2 * next]].level,
-							{p->levels[p->level_slot[f == 0][at]].level, p->levels[p->level_slot[f == 2 ? 1 : 2][at]].level},
-						};
-						p->top[f][at] = block_settle(&p->levels[*slot], &s, limit, (double)rounding, &tally);
-						*own = *own < p->top[f][at] ? p->top[f][at] : *own;
-					}
+	uint32_t count = 0;
+	for (uint32_t b = 0; b < p->bands.count; b++) {
+		const struct band *band = &p->bands.band[b];
+		for (uint32_t y = 0; y < band->block_rows; y++)
+			for (uint32_t x = 0; x < band->block_columns; x++) {
+				const size_t at = block0 + band->block_at + (size_t)y * band->block_stride + x;
+				const uint32_t *slot = p->level_slot[f] + at;
+				if (!*slot)
+					continue;
+				const struct surroundings s = {
+					p->levels[slot[-2 * next]].near,
+					p->levels[slot[-next]].near,
+					p->levels[slot[next]].near,
+					p->levels[slot[2 * next]].near,
+					{p->levels[p->level_slot[f == 0][at]].near, p->levels[p->level_slot[f == 2 ? 1 : 2][at]].near},
+				};
+				count += block_list(&p->levels[*slot], *slot, &s, class_of, p->cells + count);
 			}
-	while (tally.largest >> planes)
-		planes++;
-	for (int s = 0; s < 2; s++)
-		centre[s] = tally.count[s] ? (float)(tally.excess[s] / (double)tally.count[s]) : 0;
-	return planes;
+	}
+	return count;
+}
+
+static void harmonic_tops(struct planes *p, uint32_t f, size_t block0)
+{
+	for (uint32_t b = 0; b < p->bands.count; b++) {
+		const struct band *band = &p->bands.band[b];
+		uint8_t *own = &p->top[f][block0 + band->block_at - band->block_stride - 1];
+		*own = 0;
+		for (uint32_t y = 0; y < band->block_rows; y++)
+			for (uint32_t x = 0; x < band->block_columns; x++) {
+				const size_t at = block0 + band->block_at + (size_t)y * band->block_stride + x;
+				const uint32_t slot = p->level_slot[f][at];
+				p->top[f][at] = slot ? block_top(&p->levels[slot]) : 0;
+				*own = *own < p->top[f][at] ? p->top[f][at] : *own;
+			}
+	}
+}
+
+uint32_t planes_settle(struct planes *p, float centre[3])
+{
+	struct tally tally = {0};
+	uint8_t class_of[TRELLIS_SUMS];
+
+	trellis_classes(class_of);
+	for (uint32_t f = 0; f < 3; f++)
+		for (uint32_t m = 0; m < p->dims.phi_d; m++) {
+			const size_t block0 = (size_t)(m + 2) * p->bands.blocks;
+			const uint32_t count = harmonic_list(p, f, block0, class_of);
+			trellis_choose(p->cells, count, p->costs);
+			for (uint32_t i = 0; i < count; i++)
+				cell_settle(p, &p->cells[i], &tally);
+			harmonic_tops(p, f, block0);
+		}
+	for (int kind = 0; kind < 3; kind++)
+		centre[kind] = tally.count[kind] ? (float)(tally.beyond[kind] / (double)tally.count[kind]) : 0;
+	return tally.sizes ? (uint32_t)(32 - __builtin_clz(tally.sizes)) : 0;
 }

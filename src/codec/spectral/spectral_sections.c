@@ -17,6 +17,7 @@ enum {
 	FIELDS_VERSION = 3,        /* rows of phi_d are whole */
 	FIELDS_VERSION_CUT = 4,    /* they are cut at the horizon: spans.h */
 	FIELDS_VERSION_GRADED = 5, /* cut there or before, and steps go by frequency too: spectral_weights.h */
+	FIELDS_DEPENDENT = 3,      /* added: two quantisers take turns: dependent.h. Versions without are read only */
 	PLANES_VERSION = 2
 };
 
@@ -24,6 +25,9 @@ static const struct section_kind KINDS[] = {
 	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION},
 	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_CUT},
 	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_GRADED},
+	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION + FIELDS_DEPENDENT},
+	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_CUT + FIELDS_DEPENDENT},
+	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_GRADED + FIELDS_DEPENDENT},
 	{SECTION_PLANES, CODEC_PLANES, PLANES_VERSION},
 };
 
@@ -42,10 +46,10 @@ static uint16_t fields_version(const struct spectral_model *model)
 	return model->limit > 0 ? FIELDS_VERSION_CUT : FIELDS_VERSION;
 }
 
-/* Bytes of the fields' section before the weights. */
-static uint32_t fields_bytes(uint32_t version)
+/* Bytes of the fields' section before the weights; version: without FIELDS_DEPENDENT. */
+static uint32_t fields_bytes(uint32_t version, bool dependent)
 {
-	return 8 + 3 * 4 + 9 * 4 + 4 + 3 * 4 + 4 + (version == FIELDS_VERSION_GRADED ? 4 : 0);
+	return 8 + 3 * 4 + 9 * 4 + 4 + (dependent ? 4u : 3u) * 4 + 4 + (version == FIELDS_VERSION_GRADED ? 4 : 0);
 }
 
 /* ---- encoding ---- */
@@ -53,7 +57,8 @@ static uint32_t fields_bytes(uint32_t version)
 static void fields_write(const struct encoding *e, const struct byte_buffer *weights, struct section_list *sections)
 {
 	const uint16_t version = fields_version(e->model);
-	struct byte_buffer *out = section_add(sections, SECTION_FIELDS, CODEC_FIELDS, version, 0, SECTION_REQUIRED, NAN);
+	struct byte_buffer *out =
+		section_add(sections, SECTION_FIELDS, CODEC_FIELDS, version + FIELDS_DEPENDENT, 0, SECTION_REQUIRED, NAN);
 	write_f64(out, e->model->unit);
 	for (int c = 0; c < 3; c++)
 		write_f32(out, e->model->base[c]);
@@ -61,8 +66,8 @@ static void fields_write(const struct encoding *e, const struct byte_buffer *wei
 		for (int c = 0; c < 3; c++)
 			write_f32(out, e->model->rotation[f][c]);
 	write_f32(out, e->step);
-	write_f32(out, e->centre[0]);
-	write_f32(out, e->centre[1]);
+	for (int i = 0; i < 3; i++)
+		write_f32(out, e->centre[i]);
 	write_f32(out, SPECTRAL_CENTRE_BELOW);
 	write_u32(out, e->planes->planes);
 	if (version == FIELDS_VERSION_GRADED)
@@ -91,9 +96,9 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	memcpy(decoded->rotation, e->model->rotation, sizeof decoded->rotation);
 	decoded->weights = e->model->weights;
 	decoded->step = e->step;
-	decoded->centre[0] = e->centre[0];
-	decoded->centre[1] = e->centre[1];
-	decoded->centre[2] = SPECTRAL_CENTRE_BELOW;
+	decoded->dependent = true;
+	memcpy(decoded->centre, e->centre, sizeof e->centre);
+	decoded->centre[3] = SPECTRAL_CENTRE_BELOW;
 	decoded->planes = e->planes->planes;
 	memcpy(decoded->end, e->end, sizeof decoded->end);
 	*out = copy;
@@ -115,9 +120,9 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 		e.limit[e.layers++] = PREVIEWS[i];
 	e.limit[e.layers++] = budget;
 	weights_encode(&e.model->weights, &weights);
-	e.head_bytes =
-		record_head_size(request->name_bytes, e.layers, e.layers + 1) + fields_bytes(fields_version(e.model)) + weights.count;
-	uint64_t least = e.head_bytes + e.layers * 8;
+	e.head_bytes = record_head_size(request->name_bytes, e.layers, e.layers + 1) + fields_bytes(fields_version(e.model), true) +
+	               weights.count;
+	const uint64_t least = e.head_bytes + e.layers * 8;
 	if (weights.failed)
 		status = error_memory(error, SPECTRAL_WEIGHTS);
 	else if (least > budget)
@@ -153,10 +158,14 @@ static bp_status spectral_encode(const struct model *model, const struct encode_
 static bp_status fields_read(const struct section_bytes *section, struct spectral_model *model, bp_error *error)
 {
 	struct byte_reader in = byte_reader_over(section->bytes, section->entry->bytes);
-	const uint32_t version = section->entry->version, before_weights = fields_bytes(version);
+	const bool dependent = section->entry->version >= FIELDS_VERSION + FIELDS_DEPENDENT;
+	const uint32_t version = section->entry->version - (dependent ? (uint32_t)FIELDS_DEPENDENT : 0);
+	const uint32_t before_weights = fields_bytes(version, dependent),
+				   planes_at = before_weights - (version == FIELDS_VERSION_GRADED ? 8 : 4);
 	if (section->entry->bytes < before_weights)
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the fields' section has %u bytes, not %u and weights",
 		                 section->entry->bytes, before_weights);
+	model->dependent = dependent;
 	model->weights.graded = version == FIELDS_VERSION_GRADED;
 	model->unit = read_f64(&in);
 	for (int c = 0; c < 3; c++)
@@ -165,8 +174,9 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 		for (int c = 0; c < 3; c++)
 			model->rotation[f][c] = read_f32(&in);
 	model->step = read_f32(&in);
-	for (int i = 0; i < 3; i++)
-		model->centre[i] = read_f32(&in);
+	for (int i = 0; i < 4; i++)
+		if (i != 1 || dependent)
+			model->centre[i] = read_f32(&in);
 	model->planes = read_u32(&in);
 	model->limit = model->weights.graded ? read_f32(&in) : version == FIELDS_VERSION_CUT ? SPAN_MARGIN : 0;
 	if (!(model->unit >= SPECTRAL_UNIT_LEAST && model->unit <= SPECTRAL_UNIT_MOST))
@@ -181,13 +191,13 @@ static bp_status fields_read(const struct section_bytes *section, struct spectra
 				return error_set(error, BP_ERROR_CORRUPT, 20, "the rotation holds %g", (double)model->rotation[f][c]);
 	if (!(model->step > 0 && model->step <= 0x1p40f))
 		return error_set(error, BP_ERROR_CORRUPT, 56, "the step is %g", (double)model->step);
-	for (int i = 0; i < 3; i++)
+	for (int i = 0; i < 4; i++)
 		if (!(fabsf(model->centre[i]) <= 1))
 			return error_set(error, BP_ERROR_CORRUPT, 60, "a centre is %g", (double)model->centre[i]);
 	if (model->planes > SPECTRAL_PLANES_MAX)
-		return error_set(error, BP_ERROR_CORRUPT, 72, "%u planes: %d at most", model->planes, SPECTRAL_PLANES_MAX);
+		return error_set(error, BP_ERROR_CORRUPT, planes_at, "%u planes: %d at most", model->planes, SPECTRAL_PLANES_MAX);
 	if (model->weights.graded && !(model->limit >= SPAN_MARGIN && model->limit < 1))
-		return error_set(error, BP_ERROR_CORRUPT, 76, "rows are cut at %g, not from 2^-30 to 1", (double)model->limit);
+		return error_set(error, BP_ERROR_CORRUPT, planes_at + 4, "rows are cut at %g, not from 2^-30 to 1", (double)model->limit);
 	const char *fault = weights_decode(section->bytes + before_weights, section->entry->bytes - before_weights, &model->weights);
 	return fault ? error_set(error, BP_ERROR_CORRUPT, before_weights, "%s", fault) : BP_OK;
 }
@@ -249,7 +259,7 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 
 const struct profile_codec SPECTRAL_CODEC = {
 	.profile = PROFILE_SPECTRAL,
-	.version = 6,
+	.version = 7,
 	.kinds = KINDS,
 	.kind_count = sizeof KINDS / sizeof *KINDS,
 	.decode = spectral_decode,

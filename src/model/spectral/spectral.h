@@ -22,6 +22,7 @@
 
 #include "model/fit.h"
 #include "model/robust/robust.h"
+#include "dependent.h"
 #include "spans.h"
 #include "spectral_weights.h"
 #include "spectrum.h"
@@ -53,9 +54,11 @@ struct spectral_model {
 	float limit;           /* rows of phi_d are cut there (spans.h); 0: they are whole */
 	float noise;           /* fitted: level of the noise that was found and drawn towards 0 (spectral_denoise); 0: none */
 
-	float step; /* decoded, as all that follows */
-	/* how far values of |level| 1, and of larger ones, lie beyond it, in steps; and with planes missing, as a share of what is */
-	float centre[3];
+	float step;     /* decoded, as all that follows */
+	bool dependent; /* two quantisers take turns: dependent.h */
+	/* Where values lie beyond their level, in steps: of 1, of 1 in the second quantiser, of larger ones; and of levels whose last planes
+	   are not there, as a share of what is missing. */
+	float centre[4];
 	uint32_t planes;
 	uint32_t end[LAYERS_MAX];
 	struct spectral_level *levels; /* ordered by field and harmonic */
@@ -80,6 +83,12 @@ void spectral_free(struct spectral_model *model); /* NULL is allowed */
 
 /* The lowest plane that is coded of a field's harmonic in units 0..end-1; `planes` when none is. */
 uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
+
+/*
+ * The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres; quantiser: 0 or 1, 0
+ * where the model is not dependent or planes are missing.
+ */
+float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest, uint32_t quantiser);
 
 /*
  * spectral_denoise.c: draws coefficients that noise alone would explain towards 0, in the spectra of the three fields. *level: the noise's

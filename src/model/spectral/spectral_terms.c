@@ -11,18 +11,17 @@ uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end
 	return end > first ? planes - 1 - (end - 1 - first) / period : planes;
 }
 
-/* The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres. */
-static float level_value(const struct spectral_model *model, int32_t level, uint32_t lowest)
+float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest, uint32_t quantiser)
 {
 	const uint32_t magnitude = (uint32_t)(level < 0 ? -level : level) >> lowest << lowest;
 	float value;
 
 	if (!magnitude)
 		return 0;
-	if (lowest)
-		value = (float)magnitude + model->centre[2] * (float)(1u << lowest);
+	if (lowest) /* of the second quantiser as often as of the first */
+		value = (float)magnitude + model->centre[3] * (float)(1u << lowest) - (model->dependent ? 0.25f : 0);
 	else
-		value = (float)magnitude + model->centre[magnitude > 1];
+		value = (float)magnitude + model->centre[magnitude > 1 ? 2 : quantiser] - (quantiser ? 0.5f : 0);
 	value *= model->step;
 	return level < 0 ? -value : value;
 }
@@ -31,7 +30,8 @@ bp_status spectral_terms_make(const struct spectral_model *model, const struct s
                               struct spectral_terms *out, bp_error *error)
 {
 	const uint32_t p = inverse->dims.phi_d, cells = (uint32_t)lattice_cells(inverse->dims);
-	uint32_t n = 0, unit = 0, lowest = 0; /* units below this one have their start */
+	uint32_t n = 0, unit = 0; /* units below this one have their start */
+	uint32_t lowest = 0, state = 0;
 
 	out->term = malloc(((size_t)model->level_count + 1) * sizeof *out->term);
 	out->start = malloc((3 * (size_t)p + 1) * sizeof *out->start);
@@ -45,8 +45,11 @@ bp_status spectral_terms_make(const struct spectral_model *model, const struct s
 			while (unit <= field * p + harmonic)
 				out->start[unit++] = n;
 			lowest = spectral_lowest_plane(model->planes, p, model->end[layers - 1], field, harmonic);
+			state = 0;
 		}
-		const float value = level_value(model, level.level, lowest);
+		const float value = spectral_level_value(model, level.level, lowest, dependent_quantiser(state));
+		if (model->dependent && !lowest)
+			state = dependent_next(state, (uint32_t)level.level & 1);
 		if (value != 0)
 			out->term[n++] = spectrum_term_make(inverse, row, harmonic, value);
 	}
