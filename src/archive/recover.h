@@ -15,8 +15,8 @@ struct recovery {
 };
 
 /*
- * Is told of each material that is lost (with the offset of the damage where known) and of each second copy that is not saved; once,
- * without a name, of those that the header alone tells of.
+ * Is told of each material that is lost (with the offset of the damage where known) and of each second copy that is not saved;
+ * once, without a name, of those that the header alone tells of.
  */
 typedef void recover_report_fn(void *user, const char *material, const bp_error *why);
 

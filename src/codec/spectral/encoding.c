@@ -139,7 +139,7 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	const uint32_t limit = e->limit[e->layers - 1];
 	struct rate rate;
 	const double room = (double)limit - (double)e->head_bytes;
-	/* More than foreseen take, at 60,400 and 16,000 bytes, 50 noisy surrogates 2.1 % and -0.1 %, 50 clean ones 0.3 % and 0.5 %. */
+	/* More than foreseen take, at 60,400 and 16,000 bytes, 50 noisy surrogates 2.1 and -0.1 %, 50 clean ones 0.3 and 0.5 %. */
 	struct attempt a = {.rate = &rate, .room = room, .bias = e->model->noise > 0 ? 1.015 : 1};
 	double bits = search.aim * room * 8 / rate_each(fmax(room, 1), e->model->noise > 0); /* by rate_bits */
 	float fitting = 0; /* the step that filled the record best */

@@ -1,8 +1,9 @@
 /*
  * encoding.h: bit planes of a fitted model within a budget, in layers.
  *
- * The budget is met in two ways. A step is sought whose planes take about what there is room for; where they take more, the lowest plane is
- * cut off at a harmonic. A percent that is cut off costs more than one that is left over, so what is aimed at is near the room itself.
+ * The budget is met in two ways. A step is sought whose planes take about what there is room for; where they take more, the
+ * lowest plane is cut off at a harmonic. A percent that is cut off costs more than one that is left over, so what is aimed at
+ * is near the room itself.
  */
 #ifndef CODEC_SPECTRAL_ENCODING_H
 #define CODEC_SPECTRAL_ENCODING_H

@@ -77,14 +77,15 @@ void planes_free(struct planes *planes); /* NULL is allowed */
 void planes_start(struct planes *planes, uint32_t count);
 
 /*
- * Encoder: level = floor(|coefficient| / step + 0.4), with the coefficient's sign: near what planes_settle, which must follow, makes of it.
- * The coefficients must be the same every time.
+ * Encoder: level = floor(|coefficient| / step + 0.4), with the coefficient's sign: near what planes_settle, which must follow,
+ * makes of it. The coefficients must be the same every time.
  */
 bp_status planes_quantise(struct planes *planes, float *const coefficient[3], float step, bp_error *error);
 
 /*
- * Chooses the levels, harmonic by harmonic (trellis.h), and returns the number of planes that they need. centre[0], [1] and [2]: the mean
- * of |coefficient|/step less what the level stands for over levels of 1 in the first quantiser, of 1 in the second, and larger ones.
+ * Chooses the levels, harmonic by harmonic (trellis.h), and returns the number of planes that they need. centre[0], [1] and
+ * [2]: the mean of |coefficient|/step less what the level stands for over levels of 1 in the first quantiser, of 1 in the
+ * second, and larger ones.
  */
 uint32_t planes_settle(struct planes *planes, float centre[3]);
 

@@ -1,8 +1,8 @@
 /*
  * planes_settle.c: which levels are coded, and what the coder must know of them as a whole.
  *
- * The levels of a harmonic are chosen together, by what they are likely to cost where they are: by the sum of the sizes around them, those
- * of harmonics and fields that are chosen already as they are, the others as planes_quantise left them.
+ * The levels of a harmonic are chosen together, by what they are likely to cost where they are: by the sum of the sizes around
+ * them, those of harmonics and fields that are chosen already as they are, the others as planes_quantise left them.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,10 @@ static inline cells8 cells_widen(const uint8_t *from)
 	return __builtin_convertvector(v, cells8);
 }
 
-/* For each cell of a block: neighbours in the block and the nearest harmonics and other fields once, the harmonics of its own parity twice. */
+/*
+ * For each cell of a block: neighbours in the block and the nearest harmonics and other fields once, the harmonics of its own
+ * parity twice.
+ */
 static void sums_around(const struct level_block *block, const struct surroundings *s, uint16_t sum[BLOCK_CELLS])
 {
 	uint16_t ring[BLOCK_EDGE + 2][VIEW_STRIDE] = {{0}};

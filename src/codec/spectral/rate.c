@@ -77,8 +77,8 @@ double rate_each(double bytes, bool noisy)
 double rate_foresee(const struct rate *rate, double step, double rounding, const double taken[RATE_PLANES])
 {
 	/*
-	 * A regression over 50 clean and 50 noisy surrogates and ten genuine (RGL) tables at 60,400 and 16,000 bytes: standard deviation 0.5 to
-	 * 1.6 %, means of kinds of tables within 1 %, but for noisy ones at 60,400 bytes (encoding.c).
+	 * A regression over 50 clean and 50 noisy surrogates and ten genuine (RGL) tables at 60,400 and 16,000 bytes: standard
+	 * deviation 0.5 to 1.6 %, means of kinds of tables within 1 %, but for noisy ones at 60,400 bytes (encoding.c).
 	 */
 	const double gain = fast_log2(rate_bits(rate, step, rounding, 0) / rate_bits(rate, step, rounding, 1));
 	const double last = fast_log2(rate_bits(rate, step, rounding, 1) / rate_bits(rate, step, rounding, 2));

@@ -27,8 +27,9 @@ double rate_bits(const struct rate *rate, double step, double rounding, uint32_t
 double rate_step(const struct rate *rate, double bits, double rounding, double least);
 
 /*
- * Bits that the coder takes for each of rate_bits where all planes take so many bytes: fitted to 50 clean and to 50 noisy surrogates at
- * 4,096, 16,000 and 60,400 bytes, clean ones 1 % above their median, as few lie far below. Two of three are within 5 %.
+ * Bits that the coder takes for each of rate_bits where all planes take so many bytes: fitted to 50 clean and to 50 noisy
+ * surrogates at 4,096, 16,000 and 60,400 bytes, clean ones 1 % above their median, as few lie far below. Two of three are
+ * within 5 %.
  */
 double rate_each(double bytes, bool noisy);
 

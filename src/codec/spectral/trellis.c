@@ -7,8 +7,9 @@ enum { CLASSES = 19 };
 static const float NEVER = 1e30f;
 
 /*
- * By the sum around: the least of each class, and bits of 0, of 1, and of each further step, as sizes around which the mean is such are
- * distributed: geometrically, 0.15 bits for a sign that is not worth its bit, and dear where nothing is around (measured on four materials).
+ * By the sum around: the least of each class, and bits of 0, of 1, and of each further step, as sizes around which the mean is
+ * such are distributed: geometrically, 0.15 bits for a sign that is not worth its bit, and dear where nothing is around
+ * (measured on four materials).
  */
 static const uint8_t LEAST[CLASSES] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 11, 13, 16, 20, 25, 32, 44, 64, 100, 160};
 static const float ZERO[CLASSES] = {0.00f, 0.01f, 0.02f, 0.06f, 0.13f, 0.20f, 0.28f, 0.39f, 0.54f, 0.65f,
@@ -45,8 +46,8 @@ static inline lanes4 lanes_where(mask4 where, lanes4 a, lanes4 b) { return (lane
 static inline lanes4 lanes_all(float x) { return (lanes4){x, x, x, x}; }
 
 /*
- * What each choice costs: 0; an even and an odd level of the first quantiser, then of the second. Where the size is far from 0, bits are
- * counted from those of the size itself, so that sums stay small.
+ * What each choice costs: 0; an even and an odd level of the first quantiser, then of the second. Where the size is far from 0,
+ * bits are counted from those of the size itself, so that sums stay small.
  */
 static inline lanes4 cell_costs(const struct trellis_cell *cell, float *zero)
 {

@@ -1,8 +1,10 @@
 /*
- * trellis.h: the levels of one harmonic, chosen together (the algorithm of Viterbi 1967, over the states of model/spectral/dependent.h).
+ * trellis.h: the levels of one harmonic, chosen together (the algorithm of Viterbi 1967, over the states of
+ * model/spectral/dependent.h).
  *
- * Least is to be the sum of squared errors, in steps, and of the bits that the levels are likely to take, each counted as TRELLIS_BIT. No
- * level is chosen by itself: it decides which values the next ones may have, and one that stands alone costs most.
+ * Least is to be the sum of squared errors, in steps, and of the bits that the levels are likely to take, each counted as
+ * TRELLIS_BIT. No level is chosen by itself: it decides which values the next ones may have, and one that stands alone costs
+ * most.
  */
 #ifndef CODEC_SPECTRAL_TRELLIS_H
 #define CODEC_SPECTRAL_TRELLIS_H
@@ -21,7 +23,10 @@ struct trellis_cell {
 	uint8_t quantiser; /* out: of a level that is not 0 */
 };
 
-/* Before a cell: the least cost of each state; and what the cell's choices cost: 0, an even and an odd level of either quantiser. */
+/*
+ * Before a cell: the least cost of each state; and what the cell's choices cost: 0, an even and an odd level of either
+ * quantiser.
+ */
 struct trellis_costs {
 	float of[DEPENDENT_STATES], zero, level[4];
 };

@@ -56,8 +56,8 @@ struct spectral_model {
 
 	float step;     /* decoded, as all that follows */
 	bool dependent; /* two quantisers take turns: dependent.h */
-	/* Where values lie beyond their level, in steps: of 1, of 1 in the second quantiser, of larger ones; and of levels whose last planes
-	   are not there, as a share of what is missing. */
+	/* Where values lie beyond their level, in steps: of 1, of 1 in the second quantiser, of larger ones; and of levels whose
+	   last planes are not there, as a share of what is missing. */
 	float centre[4];
 	uint32_t planes;
 	uint32_t end[LAYERS_MAX];
@@ -85,15 +85,15 @@ void spectral_free(struct spectral_model *model); /* NULL is allowed */
 uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic);
 
 /*
- * The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres; quantiser: 0 or 1, 0
- * where the model is not dependent or planes are missing.
+ * The coefficient that a level stands for when planes below `lowest` are not there, by the model's step and centres; quantiser:
+ * 0 or 1, 0 where the model is not dependent or planes are missing.
  */
 float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest, uint32_t quantiser);
 
 /*
- * spectral_denoise.c: draws coefficients that noise alone would explain towards 0, in the spectra of the three fields. *level: the noise's
- * standard deviation, in log2 units, which three quarters of the whole rows are below, the largest of the fields; 0 where there is too little
- * for anything to be done.
+ * spectral_denoise.c: draws coefficients that noise alone would explain towards 0, in the spectra of the three fields. *level:
+ * the noise's standard deviation, in log2 units, which three quarters of the whole rows are below, the largest of the fields; 0
+ * where there is too little for anything to be done.
  */
 bp_status spectral_denoise(struct spectrum *spectrum, struct lattice_dims dims, const struct watch *watch, float *const field[3],
                            float *level, bp_error *error);

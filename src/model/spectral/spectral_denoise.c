@@ -4,10 +4,10 @@
  *     kept = c max(0, 1 - LAMBDA sigma^2 / mean square of the coefficients around c)
  *
  * The noise is estimated from the table itself, by medians of the finest diagonal band, in which smooth materials
- * have next to nothing: sigma = scale(theta_d) * factor(harmonic), because measurements grow noisy towards grazing angles. Faults that are
- * constant along phi_d are in the first harmonic only, and do not: there sigma^2 = scale(theta_d)^2 + streak^2. An orthonormal transform
- * spreads white noise evenly over its bands, so the estimate serves all of them. It is made where rows are whole: what is cut has
- * fewer coefficients, and its noise is that of grazing light.
+ * have next to nothing: sigma = scale(theta_d) * factor(harmonic), because measurements grow noisy towards grazing angles.
+ * Faults that are constant along phi_d are in the first harmonic only, and do not: there sigma^2 = scale(theta_d)^2 + streak^2.
+ * An orthonormal transform spreads white noise evenly over its bands, so the estimate serves all of them. It is made where rows
+ * are whole: what is cut has fewer coefficients, and its noise is that of grazing light.
  *
  * All of it is done to the spectrum of the turned table too (spectrum_turn.h); the mean of both is what is kept.
  */

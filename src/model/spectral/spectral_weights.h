@@ -43,8 +43,8 @@ static inline uint32_t spectral_weights_edge(const struct spectral_weights *weig
 void spectral_weights_find(const struct lattice *lattice, double unit, struct spectral_weights *out);
 
 /*
- * For a table with noise, where even steps would be coarser than it by so many octaves: none of the weights up to 1/2, as finer steps would
- * code more of the noise, all from 3 1/2 on, as if there were none, and their share between.
+ * For a table with noise, where even steps would be coarser than it by so many octaves: none of the weights up to 1/2, as finer
+ * steps would code more of the noise, all from 3 1/2 on, as if there were none, and their share between.
  */
 void spectral_weights_ease(struct spectral_weights *weights, float octaves);
 

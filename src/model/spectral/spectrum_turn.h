@@ -1,7 +1,7 @@
 /*
- * spectrum_turn.h: the spectrum of the same table with theta_h and theta_d reversed. Where their extents are even, the wavelets' first step
- * pairs each cell with its other neighbour there, so what a step's thresholds do to the one spectrum and to the other differs, and the mean of
- * both is nearer to what was measured (cycle spinning: Coifman and Donoho 1995).
+ * spectrum_turn.h: the spectrum of the same table with theta_h and theta_d reversed. Where their extents are even, the
+ * wavelets' first step pairs each cell with its other neighbour there, so what a step's thresholds do to the one spectrum and
+ * to the other differs, and the mean of both is nearer to what was measured (cycle spinning: Coifman and Donoho 1995).
  */
 #ifndef MODEL_SPECTRAL_SPECTRUM_TURN_H
 #define MODEL_SPECTRAL_SPECTRUM_TURN_H
