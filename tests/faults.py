@@ -70,7 +70,7 @@ class Place:
         """An input that carries its record. Fitted anew it would give another archive, so that would not go unnoticed."""
         measured, extracted = folder + "/other.binary", self.inputs + "/other.binary"
         fixtures.write(measured, fixtures.table(5, (16, 16, 24)), (16, 16, 24))
-        self.run([measured])
+        self.run([measured], ["--budget", "12000"])  # which the cells below the horizon have room for
         subprocess.run([TOOL, "extract", "--force", "-C", folder, "--plain", self.target], check=True)
         subprocess.run([TOOL, "extract", "-C", self.inputs, self.target], check=True)
         report = subprocess.run(self.command([extracted]) + ["--json"], check=True, stdout=subprocess.PIPE).stdout
