@@ -46,6 +46,8 @@ static const struct {
 	{PROFILE_SPECTRAL, "step", WHOLE_TEN, 6},
 	{PROFILE_SPECTRAL, "missing-slices", WHOLE_ONE, 3},
 	{PROFILE_SPECTRAL, "missing-slices", WHOLE_TEN, 3},
+	/* A table of noise is taken for noise again, and drawn towards 0 a little more. */
+	{PROFILE_SPECTRAL, "noise", WHOLE_ONE, 0.5},
 	{PROFILE_SPECTRAL, "nonfinite", WHOLE_ONE, 1},
 	{PROFILE_SPECTRAL, "denormal", WHOLE_ONE, 1},
 };
