@@ -100,7 +100,7 @@ bp_status spectral_denoise(struct spectrum *spectrum, struct lattice_dims dims, 
 
 /* spectral_rank.c: coefficients that a record of so many bytes has room for. */
 double spectral_places(double budget_bytes);
-/* The size above which there are about `count` of the coefficients [rows][lanes], by a look at every so-manieth row. */
+/* The size above which there are about `count` of the coefficients [rows][lanes], from one row in `every`. */
 float spectral_size_of_rank(const float *coefficient, size_t rows, size_t lanes, size_t every, double count);
 
 /*

@@ -38,8 +38,8 @@ struct noise {
 	float level;   /* three quarters of the scales are below; 0: nothing is done */
 };
 
-/* The one that `rank` of n sizes >= 0 are below; few: room for as many of them. */
-static double size_of_rank(const float *size, size_t n, size_t rank, double *few)
+/* The one of n sizes >= 0 that `rank` of them are below; few: room for as many of them. */
+static double ranked(const float *size, size_t n, size_t rank, double *few)
 {
 	enum { SHIFT = 20, BINS = 1 << (31 - SHIFT) }; /* eight to the octave */
 	uint32_t bins[BINS] = {0}, bin = 0;
@@ -57,7 +57,7 @@ static double size_of_rank(const float *size, size_t n, size_t rank, double *few
 	return select_kth(few, kept, rank - below);
 }
 
-static double median(const float *size, size_t n, double *few) { return size_of_rank(size, n, n / 2, few); }
+static double median(const float *size, size_t n, double *few) { return ranked(size, n, n / 2, few); }
 
 /* Is the row in whose middle the detail (y, x) of the finest diagonal band lies a whole one? */
 static bool detail_whole(struct lattice_dims d, const uint16_t *span, uint32_t y, uint32_t x)
@@ -123,7 +123,7 @@ static void streak_estimate(struct lattice_dims d, const uint16_t *span, const f
 		}
 	const double first = median(sample, n, few) / NORMAL_MEDIAN, white = median(scale, n, few);
 	noise->streak = (float)fmax(first * first - white * white, 0);
-	noise->level = (float)size_of_rank(scale, n, n / 4 * 3, few);
+	noise->level = (float)ranked(scale, n, n / 4 * 3, few);
 }
 
 static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, const float *c, struct noise *noise, bp_error *error)
