@@ -109,8 +109,8 @@ double reference_marginals(const struct lattice *lattice)
 		worst = fmax(worst, fabs((double)(log2l(found.d[j]) - f[1][j])));
 	for (uint32_t k = 0; k < d.phi_d; k++)
 		worst = fmax(worst, fabs((double)(log2l(found.phi[k]) - f[2][k])));
-	marginals_free(&found);
-	importance_free(importance);
+	free(found.h);
+	free(importance);
 	free(value);
 	return worst;
 }

@@ -13,7 +13,6 @@
 
 #include "model/fidelity.h"
 #include "model/paper/field.h"
-#include "model/paper/paper_plane.h"
 #include "model/model.h"
 #include "model/paper/paper.h"
 #include "model/paper/sparse_fit.h"
@@ -383,7 +382,7 @@ static void a_field_of_zeros_is_not_a_field_of_ones(void **user)
 		wanted[i] = 1;
 	assert_int_equal(sparse_fit_quantise(&fit, &target, 1, x, &field, NULL), BP_OK);
 	assert_int_equal(field.count, 0);
-	field_codec_free(codec);
+	free(codec);
 	sparse_fit_free(&fit);
 }
 

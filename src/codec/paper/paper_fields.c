@@ -5,17 +5,11 @@
 #include "paper_fields.h"
 #include "sparse_code.h"
 
-static uint32_t marginal_count(struct lattice_dims dims, int axis)
-{
-	return axis == 0 ? dims.theta_h : axis == 1 ? dims.theta_d : dims.phi_d;
-}
-
 void marginals_write(struct lattice_dims dims, const struct paper_channel *channel, struct byte_buffer *out)
 {
 	write_f64(out, channel->scale);
-	for (int axis = 0; axis < 3; axis++)
-		for (uint32_t i = 0; i < marginal_count(dims, axis); i++)
-			write_u16(out, paper_code(channel->marginal[axis][i]));
+	for (size_t i = 0; i < paper_marginal_values(dims); i++)
+		write_u16(out, paper_code(channel->marginal[0][i]));
 }
 
 bp_status marginals_read(struct byte_reader *in, struct lattice_dims dims, double specular, struct paper_channel *channel,
@@ -27,14 +21,11 @@ bp_status marginals_read(struct byte_reader *in, struct lattice_dims dims, doubl
 	if (!isfinite(specular * channel->scale))
 		return error_set(error, BP_ERROR_CORRUPT, 0, "the scale %g and the specular parameter %g overflow", channel->scale,
 		                 specular);
-	for (int axis = 0; axis < 3; axis++) {
-		uint32_t count = marginal_count(dims, axis);
-		channel->marginal[axis] = malloc(count * sizeof(float));
-		if (!channel->marginal[axis])
-			return error_memory(error, count * sizeof(float));
-		for (uint32_t i = 0; i < count; i++)
-			channel->marginal[axis][i] = paper_coded(read_u16(in));
-	}
+	const bp_status status = paper_marginals_alloc(dims, channel, error);
+	if (status)
+		return status;
+	for (size_t i = 0; i < paper_marginal_values(dims); i++)
+		channel->marginal[0][i] = paper_coded(read_u16(in));
 	if (in->failed || byte_reader_left(in))
 		return error_set(error, BP_ERROR_CORRUPT, 0, "marginals of %ux%ux%u cells take other than these bytes", dims.theta_h,
 		                 dims.theta_d, dims.phi_d);
@@ -57,7 +48,7 @@ bp_status fields_write(struct lattice_dims dims, enum paper_field kind, const st
 		if (fields[i].count)
 			sparse_encode(&encoder, coder, &fields[i]);
 	range_encoder_end(&encoder);
-	sparse_coder_free(coder);
+	free(coder);
 	return out->failed ? error_memory(error, out->count) : BP_OK;
 }
 
@@ -89,7 +80,7 @@ bp_status fields_read(struct byte_reader *in, struct lattice_dims dims, enum pap
 	if (!status && !range_decoder_ended(&decoder))
 		status = error_set(error, BP_ERROR_CORRUPT, in->at, "the coefficients take %zu bytes, %zu are there", decoder.at,
 		                   decoder.count);
-	sparse_coder_free(coder);
+	free(coder);
 	return status;
 }
 
@@ -104,10 +95,9 @@ static bp_status field_coarsen(const struct sparse_field *from, double factor, u
 	if (!from->count || step > PAPER_STEP_MOST)
 		return BP_OK;
 	to->step = (uint16_t)step;
-	to->index = malloc(from->count * sizeof *to->index);
-	to->level = malloc(from->count * sizeof *to->level);
-	if (!to->index || !to->level)
-		return error_memory(error, from->count * (sizeof *to->index + sizeof *to->level));
+	const bp_status status = sparse_field_alloc(from->count, to, error);
+	if (status)
+		return status;
 	for (uint32_t i = 0; i < from->count; i++) {
 		const int32_t level = (int32_t)lrint(from->level[i] * factor);
 		if (!level)

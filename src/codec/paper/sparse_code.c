@@ -6,35 +6,21 @@
 
 bp_status sparse_coder_create(struct lattice_dims dims, enum paper_field kind, struct sparse_coder **out, bp_error *error)
 {
-	struct sparse_coder *coder = calloc(1, sizeof *coder);
-	uint32_t cells = paper_plane_cells(dims, kind);
+	const uint32_t cells = paper_plane_cells(dims, kind);
+	const size_t bytes = sizeof(struct sparse_coder) + cells * (sizeof(uint32_t) + 2);
+	struct sparse_coder *coder = calloc(bytes, 1);
 
 	if (!coder)
-		return error_memory(error, sizeof *coder);
+		return error_memory(error, bytes);
 	coder->cells = cells;
-	coder->band = malloc(cells);
-	coder->before = calloc(cells, 1);
-	coder->marks = malloc(cells * sizeof *coder->marks);
-	if (!coder->band || !coder->before || !coder->marks) {
-		sparse_coder_free(coder);
-		return error_memory(error, cells * (2 + sizeof *coder->marks));
-	}
+	coder->band = (uint8_t *)(coder->marks + cells);
+	coder->before = coder->band + cells;
 	paper_plane_bands(dims, kind, coder->band);
 	for (uint32_t i = 0; i < cells; i++)
 		coder->band[i] = coder->band[i] < SPARSE_BANDS ? coder->band[i] : SPARSE_BANDS - 1;
 	bit_models_reset((struct bit_model *)&coder->models, sizeof coder->models / sizeof(struct bit_model));
 	*out = coder;
 	return BP_OK;
-}
-
-void sparse_coder_free(struct sparse_coder *coder)
-{
-	if (!coder)
-		return;
-	free(coder->band);
-	free(coder->before);
-	free(coder->marks);
-	free(coder);
 }
 
 /* Large follows large: the context is the size class of the number before. */
@@ -87,10 +73,9 @@ bp_status sparse_decode(struct range_decoder *decoder, struct sparse_coder *code
 		return error_set(error, BP_ERROR_CORRUPT, decoder->at,
 		                 "a field of %u coefficients: its plane has %u, and %zu can be in these bytes", count, coder->cells,
 		                 most);
-	field->index = malloc(count * sizeof *field->index);
-	field->level = malloc(count * sizeof *field->level);
-	if (!field->index || !field->level)
-		return error_memory(error, count * (sizeof *field->index + sizeof *field->level));
+	const bp_status status = sparse_field_alloc(count, field, error);
+	if (status)
+		return status;
 	for (uint32_t i = 0; i < count; i++) {
 		gap = gamma_decode(decoder, &models->gap[context_of(gap)]);
 		if (gap >= coder->cells - next)

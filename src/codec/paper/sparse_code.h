@@ -20,12 +20,12 @@ struct sparse_coder {
 	uint32_t cells;  /* of the plane */
 	uint8_t *band;   /* [cells]: how fine the coefficients are, 0 coarse */
 	uint8_t *before; /* [cells]: min(|level|, 3) of the field before; 0 at first */
-	uint32_t *marks; /* where it is not 0 */
 	uint32_t mark_count;
+	uint32_t marks[]; /* where it is not 0; behind them the arrays above */
 };
 
+/* *out is freed with free(). */
 bp_status sparse_coder_create(struct lattice_dims dims, enum paper_field kind, struct sparse_coder **out, bp_error *error);
-void sparse_coder_free(struct sparse_coder *coder); /* NULL is allowed */
 
 /* A field whose count is not 0. */
 void sparse_encode(struct range_encoder *encoder, struct sparse_coder *coder, const struct sparse_field *field);

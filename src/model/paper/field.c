@@ -4,42 +4,29 @@
 #include <string.h>
 
 #include "error.h"
-#include "paper_plane.h"
 
 struct field_codec {
 	struct wavelet_plane plane;
 	size_t cells; /* of the plane */
 	float least;
-	float *coefficient, *scratch;
+	float *scratch; /* behind the coefficients */
+	float coefficient[];
 };
 
 bp_status field_codec_create(struct lattice_dims dims, enum paper_field kind, struct field_codec **out, bp_error *error)
 {
-	struct field_codec *codec = calloc(1, sizeof *codec);
+	const struct wavelet_plane plane = paper_plane(dims, kind);
+	const size_t cells = wavelet_cells(&plane), bytes = sizeof(struct field_codec) + 4 * cells * sizeof(float);
+	struct field_codec *codec = malloc(bytes);
 
 	if (!codec)
-		return error_memory(error, sizeof *codec);
-	codec->plane = paper_plane(dims, kind);
-	codec->cells = wavelet_cells(&codec->plane);
+		return error_memory(error, bytes);
+	codec->plane = plane;
+	codec->cells = cells;
 	codec->least = kind == PAPER_SLICE ? 0 : FIELD_PAIR_MIN;
-	codec->coefficient = malloc(codec->cells * sizeof *codec->coefficient);
-	codec->scratch = malloc(3 * codec->cells * sizeof *codec->scratch);
-	if (!codec->coefficient || !codec->scratch) {
-		const size_t cells = codec->cells;
-		field_codec_free(codec);
-		return error_memory(error, 4 * cells * sizeof(float));
-	}
+	codec->scratch = codec->coefficient + cells;
 	*out = codec;
 	return BP_OK;
-}
-
-void field_codec_free(struct field_codec *codec)
-{
-	if (!codec)
-		return;
-	free(codec->coefficient);
-	free(codec->scratch);
-	free(codec);
 }
 
 void field_expand(struct field_codec *codec, const struct sparse_field *field, float *value)

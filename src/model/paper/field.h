@@ -10,10 +10,9 @@
 #define FIELD_VALUE_MAX 1e6f
 #define FIELD_PAIR_MIN 0.03125f
 
-struct field_codec; /* memory for fields of one kind; use it from one thread at a time */
+struct field_codec; /* memory for fields of one kind; use it from one thread at a time; freed with free() */
 
 bp_status field_codec_create(struct lattice_dims dims, enum paper_field kind, struct field_codec **out, bp_error *error);
-void field_codec_free(struct field_codec *codec); /* NULL is allowed */
 
 /* The field's values, row-major, within their limits; all 1 when count is 0. Indices beyond the plane are ignored. */
 void field_expand(struct field_codec *codec, const struct sparse_field *field, float *value);

@@ -14,27 +14,16 @@ enum { ROUNDS = 8, TURNS = 3 }; /* of h and d by turns; of these and phi */
 
 bp_status marginals_alloc(struct lattice_dims d, struct marginals *out, bp_error *error)
 {
-	const size_t pairs = (size_t)d.theta_h * d.theta_d;
+	const size_t pairs = (size_t)d.theta_h * d.theta_d, bytes = (paper_marginal_values(d) + 2 * pairs) * sizeof(float);
 
-	*out = (struct marginals){.h = malloc(d.theta_h * sizeof(float)),
-	                          .d = malloc(d.theta_d * sizeof(float)),
-	                          .phi = malloc(d.phi_d * sizeof(float)),
-	                          .rest = malloc(pairs * sizeof(float)),
-	                          .measured = malloc(pairs * sizeof(float))};
-	if (out->h && out->d && out->phi && out->rest && out->measured)
-		return BP_OK;
-	marginals_free(out);
-	return error_memory(error, 2 * pairs * sizeof(float));
-}
-
-void marginals_free(struct marginals *m)
-{
-	free(m->h);
-	free(m->d);
-	free(m->phi);
-	free(m->rest);
-	free(m->measured);
-	*m = (struct marginals){.h = NULL};
+	out->h = malloc(bytes);
+	if (!out->h)
+		return error_memory(error, bytes);
+	out->d = out->h + d.theta_h;
+	out->phi = out->d + d.theta_d;
+	out->rest = out->phi + d.phi_d;
+	out->measured = out->rest + pairs;
+	return BP_OK;
 }
 
 /* Sums of the logarithms and of their weights: of every pair (theta_h, theta_d) and of every phi_d. */

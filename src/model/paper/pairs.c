@@ -235,7 +235,7 @@ static bp_status wanted_code(struct turns *t, struct pair *p, bool first, bool l
 	status = status ? status : field_codec_create(t->channel->dims, p->kind, &codec, error);
 	if (!status)
 		field_expand(codec, p->out, p->value);
-	field_codec_free(codec);
+	free(codec);
 	return status;
 }
 

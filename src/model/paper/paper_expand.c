@@ -32,7 +32,7 @@ static void slices_free(struct slices *s)
 	free(s->hphi);
 	free(s->dphi);
 	free(s->column);
-	field_codec_free(s->codec);
+	free(s->codec);
 }
 
 static bp_status pair_expand(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *field, bool loaded,
@@ -49,7 +49,7 @@ static bp_status pair_expand(struct lattice_dims dims, enum paper_field kind, co
 	bp_status status = field_codec_create(dims, kind, &codec, error);
 	if (!status)
 		field_expand(codec, loaded ? field : &one, *out);
-	field_codec_free(codec);
+	free(codec);
 	return status;
 }
 

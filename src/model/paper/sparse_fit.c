@@ -19,18 +19,18 @@ bp_status sparse_fit_create(const struct wavelet_plane *plane, struct sparse_fit
 
 	fit.row_squares = wavelet_squares(plane->kind, plane->rows);
 	fit.column_squares = wavelet_squares(plane->kind, plane->columns);
-	fit.scratch = malloc(3 * n * sizeof(float));
-	fit.field = malloc(n * sizeof(float));
-	fit.gradient = malloc(6 * n * sizeof(float));
-	if (!fit.row_squares || !fit.column_squares || !fit.scratch || !fit.field || !fit.gradient) {
+	fit.scratch = malloc(10 * n * sizeof(float));
+	if (!fit.row_squares || !fit.column_squares || !fit.scratch) {
 		sparse_fit_free(&fit);
 		return error_memory(error, 10 * n * sizeof(float));
 	}
-	fit.inverse = fit.gradient + n;
-	fit.z = fit.gradient + 2 * n;
-	fit.direction = fit.gradient + 3 * n;
-	fit.image = fit.gradient + 4 * n;
-	fit.gain = fit.gradient + 5 * n;
+	fit.field = fit.scratch + 3 * n;
+	fit.gradient = fit.scratch + 4 * n;
+	fit.inverse = fit.scratch + 5 * n;
+	fit.z = fit.scratch + 6 * n;
+	fit.direction = fit.scratch + 7 * n;
+	fit.image = fit.scratch + 8 * n;
+	fit.gain = fit.scratch + 9 * n;
 	*out = fit;
 	return BP_OK;
 }
@@ -40,9 +40,6 @@ void sparse_fit_free(struct sparse_fit *fit)
 	free(fit->row_squares);
 	free(fit->column_squares);
 	free(fit->scratch);
-	free(fit->field);
-	free(fit->gradient);
-	*fit = (struct sparse_fit){.cells = 0};
 }
 
 /* out[a][.] = sum over n of square[a][n] in[n][.]; most squares are 0. */
@@ -180,7 +177,7 @@ bp_status sparse_fit_quantise(const struct sparse_fit *fit, const struct sparse_
 {
 	const size_t n = fit->coefficients;
 	double logs = 0, largest = 0;
-	size_t count = 0;
+	uint32_t count = 0;
 
 	*out = (struct sparse_field){.count = 0};
 	if (sparse_fit_is_one(fit, target))
@@ -196,10 +193,9 @@ bp_status sparse_fit_quantise(const struct sparse_fit *fit, const struct sparse_
 	const long code = lrint(ceil(256 * fast_log2(step))) + PAPER_STEP_ONE;
 	out->step = (uint16_t)(code < PAPER_STEP_LEAST ? PAPER_STEP_LEAST : code > PAPER_STEP_MOST ? PAPER_STEP_MOST : code);
 	const float unit_of_levels = paper_step(out->step);
-	out->index = malloc((count ? count : 1) * sizeof *out->index);
-	out->level = malloc((count ? count : 1) * sizeof *out->level);
-	if (!out->index || !out->level)
-		return error_memory(error, count * (sizeof *out->index + sizeof *out->level));
+	const bp_status status = sparse_field_alloc(count ? count : 1, out, error);
+	if (status)
+		return status;
 	for (size_t i = 0; i < n; i++) {
 		const long level = lrintf(x[i] / unit_of_levels);
 		if (!level)

@@ -18,7 +18,7 @@ struct sparse_fit {
 	struct wavelet_plane plane;
 	size_t cells, coefficients;
 	float *row_squares, *column_squares;
-	float *scratch;                                    /* 3 planes, of the transform */
+	float *scratch;                                    /* 3 planes, of the transform; owns those that follow */
 	float *field;                                      /* T of something */
 	float *gradient, *inverse, *z, *direction, *image; /* of coefficients */
 	float *gain;
