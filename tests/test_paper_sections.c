@@ -88,7 +88,7 @@ static bp_status pack(const struct model *model, uint32_t budget, struct packed 
 	struct model *decoded = NULL;
 	memset(out, 0, sizeof *out);
 	bp_status status =
-		PAPER_ENCODER.encode(model, &request, &out->sections, &out->head.layer_count, &out->head.left_out, &decoded, error);
+		paper_encode(model, &request, &out->sections, &out->head.layer_count, &out->head.left_out, &decoded, error);
 	if (status)
 		return status;
 	out->record_bytes = record_head_size(11, out->head.layer_count, out->sections.count);

@@ -94,7 +94,7 @@ FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct r
 	head->dims = model->dims;
 	memcpy(head->colour, model->colour, sizeof head->colour);
 	memset(sections, 0, sizeof *sections);
-	assert_int_equal(PAPER_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
+	assert_int_equal(paper_encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
 		head->layers[l].fidelity = (struct fidelity){0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1),
 		                                             2.0 / (l + 1)}; /* invented: there is no source */

@@ -43,8 +43,8 @@ void sparse_fit_gradient(struct sparse_fit *fit, const struct sparse_target *tar
 void sparse_fit_gains(const struct sparse_fit *fit, const struct sparse_target *target, const float *x, float *gain);
 
 /*
- * kept[n]: 1 for the `keep` largest gains, to within 1/64, the first of those that are as good; gains of 0 are never kept. Returns
- * about the least that is.
+ * kept[n]: 1 for the `keep` largest gains, to within 1/64, the first of those that are as good; gains of 0 are never kept.
+ * Returns about the least that is.
  */
 float gains_keep(const float *gain, size_t n, size_t keep, uint8_t *kept);
 
