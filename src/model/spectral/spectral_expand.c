@@ -1,12 +1,77 @@
-/* spectral_expand.c: coefficients become a table, some rows of phi_d at a time; the inverse of spectral_fit.c. */
+/* spectral_expand.c: levels become coefficients, and these a table, some rows of phi_d at a time; the inverse of spectral_fit.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
 #include "spectral_kernels.h"
-#include "spectral_terms.h"
+#include "spectral.h"
 #include "spectrum_rows.h"
+
+/* ---- coefficients ---- */
+
+uint32_t spectral_lowest_plane(uint32_t planes, uint32_t harmonics, uint32_t end, uint32_t field, uint32_t harmonic)
+{
+	const uint32_t first = field * harmonics + harmonic,
+				   period = 3 * harmonics; /* in the highest plane, and from plane to plane */
+	return end > first ? planes - 1 - (end - 1 - first) / period : planes;
+}
+
+float spectral_level_value(const struct spectral_model *model, int32_t level, uint32_t lowest, uint32_t quantiser)
+{
+	const uint32_t magnitude = (uint32_t)(level < 0 ? -level : level) >> lowest << lowest;
+	float value;
+
+	if (!magnitude)
+		return 0;
+	if (lowest) /* of the second quantiser as often as of the first */
+		value = (float)magnitude + model->centre[3] * (float)(1u << lowest) - (model->dependent ? 0.25f : 0);
+	else
+		value = (float)magnitude + model->centre[magnitude > 1 ? 2 : quantiser] - (quantiser ? 0.5f : 0);
+	value *= model->step;
+	return level < 0 ? -value : value;
+}
+
+/* The coefficients that are not 0, ready for the inverse transform. */
+struct terms {
+	struct spectrum_term *term;
+	uint32_t *start; /* start[f P + m]: of field f, harmonic m; 3 P + 1 of them */
+};
+
+/* What the first `layers` layers hold; the caller frees both arrays, also after a failure. */
+static bp_status terms_make(const struct spectral_model *model, const struct spectrum_inverse *inverse, uint32_t layers,
+                            struct terms *out, bp_error *error)
+{
+	const uint32_t p = inverse->dims.phi_d, cells = (uint32_t)lattice_cells(inverse->dims);
+	uint32_t n = 0, unit = 0; /* units below this one have their start */
+	uint32_t lowest = 0, state = 0;
+
+	out->term = malloc(((size_t)model->level_count + 1) * sizeof *out->term);
+	out->start = malloc((3 * (size_t)p + 1) * sizeof *out->start);
+	if (!out->term || !out->start)
+		return error_memory(error, model->level_count * sizeof *out->term);
+	for (uint32_t i = 0; i < model->level_count; i++) {
+		const struct spectral_level level = model->levels[i];
+		const uint32_t field = level.at < cells ? 0 : level.at < 2 * cells ? 1 : 2, at = level.at - field * cells;
+		const uint32_t row = at / p, harmonic = spectrum_harmonic(p, at - row * p);
+		if (unit <= field * p + harmonic) {
+			while (unit <= field * p + harmonic)
+				out->start[unit++] = n;
+			lowest = spectral_lowest_plane(model->planes, p, model->end[layers - 1], field, harmonic);
+			state = 0;
+		}
+		const float value = spectral_level_value(model, level.level, lowest, dependent_quantiser(state));
+		if (model->dependent && !lowest)
+			state = dependent_next(state, (uint32_t)level.level & 1);
+		if (value != 0)
+			out->term[n++] = spectrum_term_make(inverse, row, harmonic, value);
+	}
+	while (unit <= 3 * p)
+		out->start[unit++] = n;
+	return BP_OK;
+}
+
+/* ---- rows ---- */
 
 /*
  * Cells column..column + width - 1 of row `row` (theta_h * D + theta_d): three fields, which may be read up to 15 cells past
@@ -28,7 +93,7 @@ static float most_of(double unit)
 }
 
 /* One more than the highest harmonic with a term. */
-static uint32_t harmonics_used(const struct spectral_terms *terms, uint32_t p)
+static uint32_t harmonics_used(const struct terms *terms, uint32_t p)
 {
 	uint32_t most = 0;
 	for (uint32_t u = 0; u < 3 * p; u++)
@@ -46,16 +111,15 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 	const size_t stride = d.phi_d + 15, piece = SPECTRUM_BLOCK * stride;
 	struct spectrum_inverse *inverse = NULL;
 	struct spectrum_rows *rows = NULL;
-	struct spectral_terms terms = {0};
+	struct terms terms = {0};
 
 	if (model->coefficient[0])
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a model that was fitted has no levels; its record has");
 	float *fields = calloc(3 * piece, sizeof *fields);
-	bp_status status = fields ? spectrum_inverse_create(d, &inverse, error) : error_memory(error, 3 * piece * sizeof *fields);
+	bp_status status =
+		fields ? spectral_inverse_create(d, &model->weights, &inverse, error) : error_memory(error, 3 * piece * sizeof *fields);
 	if (!status)
-		status = spectral_weights_apply(&model->weights, inverse, error);
-	if (!status)
-		status = spectral_terms_make(model, inverse, layers, &terms, error);
+		status = terms_make(model, inverse, layers, &terms, error);
 	if (!status)
 		status = spectrum_rows_create(inverse, model->limit, harmonics_used(&terms, d.phi_d), half, &rows, error);
 	for (int f = 0; !status && f < 3; f++)
@@ -72,9 +136,10 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 			take(user, &row);
 		}
 	}
-	spectral_terms_free(&terms);
+	free(terms.term);
+	free(terms.start);
 	spectrum_rows_free(rows);
-	spectrum_inverse_free(inverse);
+	free(inverse);
 	free(fields);
 	return status;
 }

@@ -41,21 +41,19 @@ static bp_status projection_create(struct lattice_dims d, const struct spectral_
 		return error_memory(error, cells * sizeof(float));
 	bp_status status = spectral_factors_create(d, weights, &out->factors, error);
 	if (!status)
-		status = spectrum_inverse_create(d, &out->inverse, error);
-	if (!status)
-		status = spectral_weights_apply(weights, out->inverse, error);
+		status = spectral_inverse_create(d, weights, &out->inverse, error);
 	return status ? status : spectrum_rows_create(out->inverse, limit, d.phi_d, false, &out->rows, error);
 }
 
 static void projection_free(struct projection *p)
 {
-	spectral_factors_free(&p->factors);
+	free(p->factors.row);
 	free(p->spectrum);
 	free(p->cells);
 	spectrum_rows_free(p->rows);
 	free(p->term);
 	free(p->start);
-	spectrum_inverse_free(p->inverse);
+	free(p->inverse);
 }
 
 /* One step on one channel's table. */
