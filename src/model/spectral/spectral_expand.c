@@ -1,4 +1,4 @@
-/* spectral_expand.c: levels become coefficients, and these a table, some rows of phi_d at a time; the inverse of spectral_fit.c. */
+/* spectral_expand.c: levels become coefficients, and these a table, some rows of phi_d at a time; inverse of spectral_fit.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

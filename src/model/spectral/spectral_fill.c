@@ -143,7 +143,7 @@ bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *cons
 		for (int s = 0; s < SWEEPS; s++)
 			sweep(&runs, s % 2, table[c]);
 	}
-	fill_free(fill);
+	free(fill);
 	free(runs.run);
 	free(runs.filled);
 	free(present);
