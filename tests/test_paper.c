@@ -65,7 +65,7 @@ static struct fidelity fit_and_measure(const struct lattice *l, struct model **m
 	assert_int_equal(expansion_alloc(l->dims, table, NULL), BP_OK);
 	for (uint32_t layers = 1; layers <= (*model)->layer_count; layers++)
 		assert_expands_finite(*model, layers, table);
-	assert_int_equal(fidelity_measure(l, table, &f, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(l, table, 1, &f, NULL), BP_OK);
 	return f;
 }
 
@@ -162,7 +162,7 @@ static void a_merl_size_material_is_fitted_well(void **user)
 	lattice_make(&l, LATTICE_MERL, 0.01);
 	struct fidelity f = fit_and_measure(&l, &model, &table), first;
 	assert_int_equal(model_expand(model, 1, &table, NULL), BP_OK);
-	assert_int_equal(fidelity_measure(&l, &table, &first, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(&l, &table, 1, &first, NULL), BP_OK);
 	assert_true(f.log_rmse < 0.05);
 	assert_true(f.log_rmse < first.log_rmse / 2);
 	for (int c = 0; c < 3; c++) {

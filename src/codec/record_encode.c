@@ -65,7 +65,7 @@ static bp_status layers_measure(struct record_head *head, const uint8_t *record,
 			count++;
 		}
 		if (!status)
-			status = fidelity_measure_all(lattice, tables, count, figures, error);
+			status = fidelity_measure(lattice, tables, count, figures, error);
 		for (uint32_t k = 0; !status && k < count; k++)
 			head->layers[l + k].fidelity = figures[k];
 	}

@@ -30,8 +30,8 @@ static void slice_add(const struct lattice *truth, const struct expansion *table
 	}
 }
 
-bp_status fidelity_measure_all(const struct lattice *truth, const struct expansion *tables, uint32_t count, struct fidelity *out,
-                               bp_error *error)
+bp_status fidelity_measure(const struct lattice *truth, const struct expansion *tables, uint32_t count, struct fidelity *out,
+                           bp_error *error)
 {
 	const struct lattice_dims dims = truth->dims;
 	struct fidelity_sums total[LAYERS_MAX] = {{0}};
@@ -74,9 +74,4 @@ out:
 	free(cosine);
 	free(unseen);
 	return status;
-}
-
-bp_status fidelity_measure(const struct lattice *truth, const struct expansion *table, struct fidelity *out, bp_error *error)
-{
-	return fidelity_measure_all(truth, table, 1, out, error);
 }

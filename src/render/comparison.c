@@ -57,7 +57,7 @@ bp_status comparison_measure(struct comparison_plans *plans, const struct lattic
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the reference has no valid cell");
 	if ((status = comparison_plans_make(plans, truth->dims, error)) != BP_OK)
 		return status;
-	if ((status = fidelity_measure(truth, table, &result.fidelity, error)) != BP_OK)
+	if ((status = fidelity_measure(truth, table, 1, &result.fidelity, error)) != BP_OK)
 		return status;
 	metrics_worst_cell(truth, table, &result.worst);
 	if ((status = lookup_table_measured(truth, &measured, error)) != BP_OK)

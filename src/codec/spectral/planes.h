@@ -9,10 +9,29 @@
 
 #include "model/spectral/spectral.h"
 #include "codec/bit_mixer.h"
-#include "bands.h"
+#include "planes_contexts.h"
 #include "trellis.h"
 
-enum { BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
+/*
+ * The plane of H x D wavelet coefficients of a harmonic falls into bands (FORMAT.md, "Bands"), the coarse one first, and a band
+ * into blocks of 8 x 8 (fewer at its end). Blocks have numbers; around each band's is one block of padding, so that neighbours
+ * need no test.
+ */
+struct band {
+	uint32_t row, column, rows, columns; /* in the plane of coefficients */
+	uint32_t orientation;                /* bit 0: detail along theta_d, bit 1: along theta_h */
+	int32_t parent;        /* the band of the same orientation one level coarser, band 0 at the coarsest level, -1 for band 0 */
+	uint32_t parent_shift; /* 1: a parent's cell stands for 2 x 2; 0 at the coarsest level */
+	uint32_t block_rows, block_columns, block_at, block_stride;
+};
+
+struct bands {
+	uint32_t count;
+	uint32_t blocks; /* of a plane, padding included */
+	struct band band[BANDS_MAX];
+};
+
+void bands_lay_out(uint32_t theta_h, uint32_t theta_d, struct bands *out);
 
 /*
  * What is known of the levels of one block, row by row; 0 behind the band's end. What stands for a neighbour's contexts comes
@@ -66,7 +85,7 @@ struct planes {
 	struct candidate *candidates;
 	uint32_t candidate_count;
 	float candidate_least;
-	struct plane_contexts *contexts;
+	struct plane_contexts contexts;
 	void *block; /* the one allocation behind the arrays but for the pools */
 };
 

@@ -8,8 +8,9 @@
 #define CODEC_SPECTRAL_PLANES_CONTEXTS_H
 
 #include "codec/bit_mixer.h"
-#include "bands.h"
+#include "model/spectral/spectral.h"
 
+enum { BANDS_MAX = 3 * SPECTRUM_LEVELS_MAX + 1, BLOCK_EDGE = 8, BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
 enum { HARMONIC_CLASSES = 8, SIZES = 16, SIZE_TABLE = 647 };
 
 struct plane_contexts {
@@ -28,7 +29,5 @@ struct plane_contexts {
 	struct mixer_weights sign_weights[2];
 	uint8_t size[SIZE_TABLE]; /* size(v); what is larger has the last one's */
 };
-
-void plane_contexts_reset(struct plane_contexts *contexts);
 
 #endif

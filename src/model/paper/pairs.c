@@ -37,7 +37,6 @@ struct turns {
 static void turns_free(struct turns *t)
 {
 	free(t->hd.product);
-	free(t->hd.x);
 	free(t->kept);
 }
 
@@ -47,17 +46,18 @@ static bp_status turns_alloc(struct channel_fit *channel, struct sparse_fit fit[
 	const struct lattice_dims d = channel->dims;
 	const size_t hd_cells = (size_t)d.theta_h * d.theta_d, hphi_cells = (size_t)d.theta_h * d.phi_d;
 	const size_t most = fit[0].coefficients > fit[1].coefficients ? fit[0].coefficients : fit[1].coefficients;
-	const size_t slice = (size_t)d.theta_d * d.phi_d, floats = 3 * (hd_cells + hphi_cells) + slice;
-	float *block = calloc(floats, sizeof *block), *x = calloc(fit[0].coefficients + fit[1].coefficients + most, sizeof *x);
+	const size_t slice = (size_t)d.theta_d * d.phi_d, coefficients = fit[0].coefficients + fit[1].coefficients + most;
+	const size_t floats = 3 * (hd_cells + hphi_cells) + slice + coefficients;
+	float *block = calloc(floats, sizeof *block);
 
 	*t = (struct turns){
 		.channel = channel,
 		.from = paper_shared_from(d.theta_h),
-		.hd = {PAPER_HD, d.theta_d, &fit[0], block, NULL, channel->hd, x, hd},
+		.hd = {PAPER_HD, d.theta_d, &fit[0], block, NULL, channel->hd, NULL, hd},
 		.hphi = {PAPER_HPHI, d.phi_d, &fit[1], NULL, NULL, channel->hphi, NULL, hphi},
 		.kept = malloc(most),
 	};
-	if (!block || !x || !t->kept) {
+	if (!block || !t->kept) {
 		turns_free(t);
 		return error_memory(error, floats * sizeof *block);
 	}
@@ -66,7 +66,8 @@ static bp_status turns_alloc(struct channel_fit *channel, struct sparse_fit fit[
 	t->hphi.weight = t->hphi.product + hphi_cells;
 	t->wanted = t->hphi.weight + hphi_cells;
 	t->numerator = t->wanted + hd_cells + hphi_cells;
-	t->hphi.x = x + fit[0].coefficients;
+	t->hd.x = t->numerator + slice;
+	t->hphi.x = t->hd.x + fit[0].coefficients;
 	t->energy = t->hphi.x + fit[1].coefficients;
 	return BP_OK;
 }

@@ -24,7 +24,7 @@ struct workshop {
 	struct importance *importance;
 	double unit; /* of value, 1/sr */
 	struct sparse_fit pairs[2], slices;
-	float *value, *weight, *shown; /* [cells]; value becomes the decoded model */
+	float *value, *weight, *shown; /* [cells]; value, which owns all, becomes the decoded model */
 	float *fields;                 /* of a channel_fit */
 };
 
@@ -35,7 +35,6 @@ static void workshop_free(struct workshop *w)
 	sparse_fit_free(&w->pairs[1]);
 	sparse_fit_free(&w->slices);
 	free(w->value);
-	free(w->fields);
 }
 
 static bp_status workshop_open(const struct lattice *lattice, struct workshop *w, bp_error *error)
@@ -55,12 +54,12 @@ static bp_status workshop_open(const struct lattice *lattice, struct workshop *w
 	status = status ? status : sparse_fit_create(&plane[PAPER_SLICE], &w->slices, error);
 	if (status)
 		return status;
-	w->value = malloc(3 * cells * sizeof *w->value);
-	w->fields = malloc(fields * sizeof *w->fields);
-	if (!w->value || !w->fields)
+	w->value = malloc((3 * cells + fields) * sizeof *w->value);
+	if (!w->value)
 		return error_memory(error, (3 * cells + fields) * sizeof(float));
 	w->weight = w->value + cells;
 	w->shown = w->weight + cells;
+	w->fields = w->shown + cells;
 	w->unit = importance_unit(w->importance, lattice);
 	importance_shown(w->importance, lattice, w->shown);
 	return BP_OK;

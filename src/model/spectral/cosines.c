@@ -23,7 +23,7 @@ struct node {
 struct cosines {
 	uint32_t n;
 	struct node *root;
-	float *in, *out, *scratch, *rest; /* [n][WIDTH], the last [WIDTH][n] */
+	float *out, *scratch, *rest, in[]; /* [n][WIDTH], rest [WIDTH][n]; all in one block */
 };
 
 /* From the first quadrant only, so that equal angles give equal values. */
@@ -99,18 +99,18 @@ static struct node *node_make(uint32_t n, int fourth, float scale)
 
 bp_status cosines_create(uint32_t n, struct cosines **out, bp_error *error)
 {
-	struct cosines *c = calloc(1, sizeof *c);
-
-	if (!c)
-		return error_memory(error, sizeof *c);
-	c->n = n;
-	c->root = node_make(n, 0, (float)sqrt(2.0 / n));
 	/* A node leaves at most 2 n rows behind for its children's work, which have half as many values. */
-	c->in = malloc((size_t)n * WIDTH * 7 * sizeof(float));
-	if (!c->root || !c->in) {
-		cosines_free(c);
-		return error_memory(error, (size_t)n * WIDTH * 7 * sizeof(float));
+	const size_t bytes = sizeof(struct cosines) + (size_t)n * WIDTH * 7 * sizeof(float);
+	struct cosines *c = malloc(bytes);
+	struct node *root = node_make(n, 0, (float)sqrt(2.0 / n));
+
+	if (!c || !root) {
+		node_free(root);
+		free(c);
+		return error_memory(error, bytes);
 	}
+	c->n = n;
+	c->root = root;
 	c->out = c->in + (size_t)n * WIDTH;
 	c->rest = c->out + (size_t)n * WIDTH;
 	c->scratch = c->rest + (size_t)n * WIDTH;
@@ -123,7 +123,6 @@ void cosines_free(struct cosines *cosines)
 	if (!cosines)
 		return;
 	node_free(cosines->root);
-	free(cosines->in);
 	free(cosines);
 }
 

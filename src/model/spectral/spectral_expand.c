@@ -82,7 +82,16 @@ struct spectral_row {
 	size_t row;
 	uint32_t column, width;
 };
-typedef void spectral_row_fn(void *user, const struct spectral_row *row);
+
+/* Where rows of `cells` values go: to codes, or, where these are NULL, to planes of floats. */
+struct target {
+	const struct spectral_model *model;
+	uint32_t cells;
+	float *rgb[3];
+	uint16_t *codes;
+	int channels;
+	size_t stride; /* of a row of codes */
+};
 
 /* The largest logarithm that is decoded: 40, less where unit 2^40 would be above 2^1011. */
 static float most_of(double unit)
@@ -102,9 +111,50 @@ static uint32_t harmonics_used(const struct terms *terms, uint32_t p)
 	return most;
 }
 
+/* `bytes` bytes of values of `size` bytes, each as the one at `value`; twice as many from step to step. */
+static void repeat(uint8_t *to, const uint8_t *value, size_t size, size_t bytes)
+{
+	for (size_t done = 0, here = size; done < bytes; done += here) {
+		here = done ? done : size;
+		here = here < bytes - done ? here : bytes - done;
+		memcpy(to + done, done ? to : value, here);
+	}
+}
+
+/* The cells on either side of what is there of a row of p values of `size` bytes. */
+static void sides_fill(const struct spectral_row *from, void *row, size_t size, uint32_t p)
+{
+	const uint32_t end = from->column + from->width;
+	uint8_t *own = (uint8_t *)row + from->column * size, *behind = (uint8_t *)row + end * size;
+
+	repeat(row, own, size, from->column * size);
+	repeat(behind, behind - size, size, (p - end) * size);
+}
+
+static void row_take(const struct target *to, const struct spectral_row *row)
+{
+	const struct spectral_kernels *kernels = spectral_kernels_get();
+	const struct spectral_model *m = to->model;
+	const float(*rotation)[3] = (const float(*)[3])m->rotation;
+
+	if (to->codes) {
+		const size_t channels = (size_t)to->channels;
+		uint16_t *out = to->codes + row->row * to->stride;
+		kernels->spectral_codes(row->field, row->width, m->base, rotation, most_of(m->unit), to->channels,
+		                        out + row->column * channels);
+		sides_fill(row, out, channels * sizeof *out, to->cells);
+		return;
+	}
+	float *const out[3] = {to->rgb[0] + row->row * to->cells, to->rgb[1] + row->row * to->cells,
+	                       to->rgb[2] + row->row * to->cells};
+	float *const seen[3] = {out[0] + row->column, out[1] + row->column, out[2] + row->column};
+	kernels->spectral_values(row->field, row->width, m->base, rotation, most_of(m->unit), seen);
+	for (int c = 0; c < 3; c++)
+		sides_fill(row, out[c], sizeof(float), to->cells);
+}
+
 /* All rows, or those of the table of every second value. */
-static bp_status expand(const struct spectral_model *model, uint32_t layers, bool half, spectral_row_fn *take, void *user,
-                        bp_error *error)
+static bp_status expand(const struct spectral_model *model, uint32_t layers, bool half, const struct target *to, bp_error *error)
 {
 	const struct lattice_dims d = model->dims;
 	const uint32_t count = d.theta_h * d.theta_d / (half ? 4 : 1);
@@ -133,7 +183,7 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 			spectrum_rows_seen(rows, r + n, &row.column, &row.width);
 			for (int f = 0; f < 3; f++)
 				row.field[f] = fields + (size_t)f * piece + n * stride + row.column;
-			take(user, &row);
+			row_take(to, &row);
 		}
 	}
 	free(terms.term);
@@ -144,74 +194,17 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 	return status;
 }
 
-/* `bytes` bytes of values of `size` bytes, each as the one at `value`; twice as many from step to step. */
-static void repeat(uint8_t *to, const uint8_t *value, size_t size, size_t bytes)
-{
-	for (size_t done = 0, here = size; done < bytes; done += here) {
-		here = done ? done : size;
-		here = here < bytes - done ? here : bytes - done;
-		memcpy(to + done, done ? to : value, here);
-	}
-}
-
-/* The cells on either side of what is there of a row of p values of `size` bytes. */
-static void sides_fill(const struct spectral_row *from, void *row, size_t size, uint32_t p)
-{
-	const uint32_t end = from->column + from->width;
-	uint8_t *own = (uint8_t *)row + from->column * size, *behind = (uint8_t *)row + end * size;
-
-	repeat(row, own, size, from->column * size);
-	repeat(behind, behind - size, size, (p - end) * size);
-}
-
-struct values_target {
-	const struct spectral_model *model;
-	const struct expansion *out;
-};
-
-static void values_take(void *user, const struct spectral_row *row)
-{
-	const struct values_target *target = user;
-	const struct spectral_model *m = target->model;
-	const size_t p = target->out->dims.phi_d, at = row->row * p + row->column;
-	float *const rgb[3] = {target->out->rgb[0] + at, target->out->rgb[1] + at, target->out->rgb[2] + at};
-
-	spectral_kernels_get()->spectral_values(row->field, row->width, m->base, (const float(*)[3])m->rotation, most_of(m->unit),
-	                                        rgb);
-	for (int c = 0; c < 3; c++)
-		sides_fill(row, target->out->rgb[c] + row->row * p, sizeof(float), (uint32_t)p);
-}
-
 bp_status spectral_expand(const struct spectral_model *model, uint32_t layers, bool half, struct expansion *out, bp_error *error)
 {
-	struct values_target target = {model, out};
+	const struct target target = {.model = model, .cells = out->dims.phi_d, .rgb = {out->rgb[0], out->rgb[1], out->rgb[2]}};
 	out->unit = model->unit;
-	return expand(model, layers, half, values_take, &target, error);
-}
-
-struct codes_target {
-	const struct spectral_model *model;
-	int channels;
-	uint16_t *out;
-	size_t stride;
-	uint32_t cells; /* of a row */
-};
-
-static void codes_take(void *user, const struct spectral_row *row)
-{
-	const struct codes_target *target = user;
-	const struct spectral_model *m = target->model;
-	const size_t channels = (size_t)target->channels;
-	uint16_t *out = target->out + row->row * target->stride;
-
-	spectral_kernels_get()->spectral_codes(row->field, row->width, m->base, (const float(*)[3])m->rotation, most_of(m->unit),
-	                                       target->channels, out + row->column * channels);
-	sides_fill(row, out, channels * sizeof *out, target->cells);
+	return expand(model, layers, half, &target, error);
 }
 
 bp_status spectral_expand_codes(const struct spectral_model *model, uint32_t layers, bool half, int channels, uint16_t *out,
                                 size_t stride, bp_error *error)
 {
-	struct codes_target target = {model, channels, out, stride, model->dims.phi_d / (half ? 2 : 1)};
-	return expand(model, layers, half, codes_take, &target, error);
+	const struct target target = {
+		.model = model, .cells = model->dims.phi_d / (half ? 2 : 1), .codes = out, .channels = channels, .stride = stride};
+	return expand(model, layers, half, &target, error);
 }

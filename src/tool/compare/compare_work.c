@@ -67,7 +67,7 @@ static bp_status layers_confirm(const struct compare_job *job, const struct meas
 		struct fidelity measured;
 		status = decoded_load(job, item, head, l + 1, table, error);
 		if (status == BP_OK)
-			status = fidelity_measure(lattice, table, &measured, error);
+			status = fidelity_measure(lattice, table, 1, &measured, error);
 		if (status == BP_OK)
 			status = figures_confirm(head, l, &measured, error);
 	}
