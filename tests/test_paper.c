@@ -12,7 +12,6 @@
 #include <cmocka.h>
 
 #include "model/fidelity.h"
-#include "model/paper/field.h"
 #include "model/model.h"
 #include "model/paper/paper.h"
 #include "model/paper/sparse_fit.h"

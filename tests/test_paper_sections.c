@@ -1,7 +1,7 @@
 #include "archive_fixture.h"
 
 #include "codec/profile_codec.h"
-#include "codec/paper/sparse_code.h"
+#include "codec/paper/paper_fields.h"
 #include "model/paper/paper.h"
 
 static uint64_t random_state = 88172645463325252u;

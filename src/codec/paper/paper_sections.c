@@ -118,40 +118,31 @@ bp_status paper_encode(const struct model *model, const struct encode_request *r
 {
 	const uint64_t budget = request->record_bytes_max;
 	struct bracket bracket = {.above = 0, .below = SHIFT_MOST};
-	uint32_t last = 0;
 	(void)decoded;
 
-	bp_status status = model_write(model->paper, 0, sections, layer_count, left_out, error);
-	bracket.above_bytes = record_bytes(sections, *layer_count, request->name_bytes);
-	if (status || bracket.above_bytes <= budget)
-		return status;
-	section_list_free(sections);
-	status = model_write(model->paper, SHIFT_MOST * SHIFT_GRAIN, sections, layer_count, left_out, error);
-	bracket.below_bytes = record_bytes(sections, *layer_count, request->name_bytes);
-	if (!status && bracket.below_bytes > budget)
-		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-		                 "the budget of %u bytes is too small: this record takes at least %llu", request->record_bytes_max,
-		                 (unsigned long long)bracket.below_bytes);
-	last = SHIFT_MOST;
-	while (!status && bracket.below - bracket.above > 1) {
+	for (uint32_t shift = 0, next;; shift = next) { /* the finest, the coarsest, and what lies between */
 		section_list_free(sections);
-		last = bracket_next(&bracket, budget);
-		status = model_write(model->paper, last * SHIFT_GRAIN, sections, layer_count, left_out, error);
+		const bp_status status = model_write(model->paper, shift * SHIFT_GRAIN, sections, layer_count, left_out, error);
+		if (status)
+			return status;
 		const uint64_t bytes = record_bytes(sections, *layer_count, request->name_bytes);
-		if (bytes <= budget) {
-			bracket.below = last;
-			bracket.below_bytes = bytes;
-			if (bytes >= budget - budget / 500)
-				return status; /* what is left would not buy another grain worth its time */
-		} else {
-			bracket.above = last;
+		if (bytes > budget && shift == SHIFT_MOST)
+			return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+			                 "the budget of %u bytes is too small: this record takes at least %llu", request->record_bytes_max,
+			                 (unsigned long long)bytes);
+		if (bytes > budget) {
+			bracket.above = shift;
 			bracket.above_bytes = bytes;
+		} else {
+			bracket.below = shift;
+			bracket.below_bytes = bytes;
+			if (shift == 0 || (shift < SHIFT_MOST && bytes >= budget - budget / 500))
+				return BP_OK; /* what is left would not buy another grain worth its time */
 		}
+		next = shift == 0 ? SHIFT_MOST : bracket.below - bracket.above > 1 ? bracket_next(&bracket, budget) : bracket.below;
+		if (next == shift)
+			return BP_OK;
 	}
-	if (status || last == bracket.below)
-		return status;
-	section_list_free(sections);
-	return model_write(model->paper, bracket.below * SHIFT_GRAIN, sections, layer_count, left_out, error);
 }
 
 /* ---- decoding ---- */

@@ -81,6 +81,15 @@ bp_status sparse_field_alloc(uint32_t count, struct sparse_field *field, bp_erro
 void sparse_field_free(struct sparse_field *field);
 void sparse_fields_free(struct sparse_field *fields, uint32_t count); /* the array too; NULL is allowed */
 
+/* A field's values stay within these. A pair copula is nowhere 0, so that no cell of a slice is lost to it; a slice may be. */
+#define FIELD_VALUE_MAX 1e6f
+#define FIELD_PAIR_MIN 0.03125f
+
+struct field_codec; /* memory for fields of one kind; use it from one thread at a time; freed with free() */
+bp_status field_codec_create(struct lattice_dims dims, enum paper_field kind, struct field_codec **out, bp_error *error);
+/* The field's values, row-major, within their limits; all 1 when count is 0. Indices beyond the plane are ignored. */
+void field_expand(struct field_codec *codec, const struct sparse_field *field, float *value);
+
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h of a channel over the whole lattice: the model in units of its scale; >= 0 and finite. */
 bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, float *table, bp_error *error);
 /* See model_expand. Channels that are not there become like the one that is. */

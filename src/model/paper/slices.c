@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "error.h"
-#include "field.h"
 #include "paper_kernels.h"
 
 enum { STEPS = 6 };
