@@ -1,13 +1,11 @@
 #include "merl_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "error.h"
@@ -185,23 +183,13 @@ static bp_status descriptor_read(void *user, void *bytes, size_t capacity, size_
 
 bp_status lattice_read_path(const char *path, const struct merl_reading *reading, struct lattice *out, bp_error *error)
 {
-	bp_status status;
-	struct stat about;
-	/* O_NONBLOCK: opening a FIFO or a device must not wait for its other side */
-	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-	if (fd < 0 || fstat(fd, &about) != 0) {
-		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
-		goto out;
-	}
-	if (!S_ISREG(about.st_mode)) {
-		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s",
-		                   S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
-		goto out;
-	}
-	status = input_read(descriptor_read, &fd, (uint64_t)about.st_size, reading, out, error);
-out:
-	if (fd >= 0)
-		close(fd);
+	int fd;
+	uint64_t bytes;
+	bp_status status = input_open(path, &fd, &bytes, error);
+	if (status)
+		return status;
+	status = input_read(descriptor_read, &fd, bytes, reading, out, error);
+	close(fd);
 	return status;
 }
 

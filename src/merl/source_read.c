@@ -32,7 +32,7 @@ bp_status source_item_fill(struct source_item *item, const char *name, const cha
 
 void source_licences_take(struct source_list *list, const char *path, const struct container *container)
 {
-	const struct licences *found = container_licences(container);
+	const struct licences *found = &container_sums(container)->licences;
 	for (size_t n = 0; n < found->count; n++)
 		licences_note(&list->licences, path, found->path[n]);
 }
@@ -40,14 +40,6 @@ void source_licences_take(struct source_list *list, const char *path, const stru
 bool source_is_wanted(const struct source_list *list, const char *name)
 {
 	return !list->options.wanted || list->options.wanted(list->options.user, name);
-}
-
-static bool stream_is_named(const struct source_list *list, const char *path)
-{
-	for (size_t n = 0; n < list->stream_count; n++)
-		if (!strcmp(list->streams[n], path))
-			return list->stream_named[n];
-	return false;
 }
 
 /* A member that is wanted: taken, or refused with *out filled all the same. */
@@ -76,27 +68,28 @@ static bp_status member_take(struct source_list *list, const char *path, const s
 	return status;
 }
 
-bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
+bp_status source_stream_next(struct source_list *list, size_t number, struct container *stream, struct source_item *out,
                              bool *more, bp_error *error)
 {
+	const struct container_sums *sums = container_sums(stream);
+	const char *path = list->streams[number].path;
 	struct container_member member;
 	char name[SOURCE_STEM_BYTES];
 	*out = (struct source_item){0};
 	for (;;) {
-		const size_t ignored = container_ignored(stream);
+		const size_t ignored = sums->ignored;
 		bp_status status = container_next(stream, &member, more, error);
-		list->ignored_count += container_ignored(stream) - ignored;
+		list->ignored_count += sums->ignored - ignored;
 		if (status != BP_OK)
 			return status;
 		if (!*more) {
 			source_licences_take(list, path, stream);
-			const char *remark = container_remark(stream);
-			const bool tell = list->told != stream && (remark || (container_members(stream) == 0 && stream_is_named(list, path)));
+			const bool tell = list->told != stream && (sums->remark || (sums->members == 0 && list->streams[number].named));
 			list->told = tell ? stream : NULL;
 			if (!tell)
 				return BP_OK;
-			return remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", remark)
-			              : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, SOURCE_EMPTY, container_ignored(stream));
+			return sums->remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", sums->remark)
+			                    : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, SOURCE_EMPTY, sums->ignored);
 		}
 		const bp_status fault = source_name_make(path, member.path, member.fault, name, error);
 		if (source_is_wanted(list, name))
