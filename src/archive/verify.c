@@ -49,17 +49,17 @@ static bp_status layer_check(const struct bp_archive *archive, const struct inde
 	if (!status)
 		status = model_expand(model, 0, table, error);
 	model_free(model);
-	if (!status && !(table->unit > 0 && isfinite(table->unit)))
-		status =
-			error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: the unit of its values is %g", layers - 1, table->unit);
-	for (int c = 0; !status && c < 3; c++)
+	if (status)
+		return status;
+	if (!(table->unit > 0 && isfinite(table->unit)))
+		return error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: the unit of its values is %g", layers - 1,
+		                 table->unit);
+	for (int c = 0; c < 3; c++)
 		for (size_t i = 0; i < cells; i++)
-			if (!(table->rgb[c][i] >= 0 && isfinite(table->rgb[c][i]))) {
-				status = error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: channel %d of cell %zu decodes to %g",
-				                   layers - 1, c, i, (double)table->rgb[c][i]);
-				break;
-			}
-	return status;
+			if (!(table->rgb[c][i] >= 0 && isfinite(table->rgb[c][i])))
+				return error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: channel %d of cell %zu decodes to %g",
+				                 layers - 1, c, i, (double)table->rgb[c][i]);
+	return BP_OK;
 }
 
 static bp_status layers_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
