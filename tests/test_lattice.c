@@ -79,8 +79,7 @@ static void planes_are_aligned_and_apart_and_nothing_is_valid(void **state)
 	lattice_free(&lattice);
 	assert_null(lattice.rgb[0]);
 	lattice_free(&lattice);
-	lattice_free(NULL);
-	expansion_free(NULL);
+	expansion_free(&(struct expansion){0});
 }
 
 static void a_cell_is_valid_when_all_channels_are_finite_and_not_negative(void **state)

@@ -67,10 +67,8 @@ bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error 
 
 void lattice_free(struct lattice *lattice)
 {
-	if (!lattice)
-		return;
 	free(lattice->block);
-	memset(lattice, 0, sizeof *lattice);
+	*lattice = (struct lattice){0};
 }
 
 bp_status expansion_alloc(struct lattice_dims dims, struct expansion *out, bp_error *error)
@@ -85,10 +83,8 @@ bp_status expansion_alloc(struct lattice_dims dims, struct expansion *out, bp_er
 
 void expansion_free(struct expansion *expansion)
 {
-	if (!expansion)
-		return;
 	free(expansion->block);
-	memset(expansion, 0, sizeof *expansion);
+	*expansion = (struct expansion){0};
 }
 
 enum { CELL_NEGATIVE = 1, CELL_NONFINITE = 2 };

@@ -74,7 +74,7 @@ static inline size_t lattice_index(struct lattice_dims dims, uint32_t i, uint32_
 
 /* Nothing valid, the planes not set: whoever allocates fills all of them. */
 bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error);
-void lattice_free(struct lattice *lattice); /* NULL and a zeroed struct are allowed */
+void lattice_free(struct lattice *lattice); /* a zeroed struct is allowed, as in expansion_free */
 
 /*
  * Sets valid, the counts and `most` from the planes: a cell is valid when all

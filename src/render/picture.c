@@ -21,10 +21,8 @@ bp_status picture_alloc(uint32_t width, uint32_t height, struct picture *out, bp
 
 void picture_free(struct picture *picture)
 {
-	if (picture) {
-		free(picture->rgb);
-		*picture = (struct picture){0};
-	}
+	free(picture->rgb);
+	*picture = (struct picture){0};
 }
 
 static uint8_t to_byte(double x) { return (uint8_t)(fmin(1, fmax(0, x)) * 255 + 0.5); }
