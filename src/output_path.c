@@ -40,17 +40,17 @@ bp_status output_path_resolve(const char *path, char **out, bool *found, struct 
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: a link that leads to nothing: %s", path, strerror(errno));
 	if (!target)
 		return error_memory(error, strlen(path) + 1);
-	if (link && stat(target, about) != 0) {
+	bp_status status = BP_OK;
+	if (link && stat(target, about) != 0)
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot follow the link: %s", path, strerror(errno));
+	else if (*found && !S_ISREG(about->st_mode))
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: is %s, not a regular file", path,
+		                   S_ISDIR(about->st_mode) ? "a folder" : "a special file");
+	if (status)
 		free(target);
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot follow the link: %s", path, strerror(errno));
-	}
-	if (*found && !S_ISREG(about->st_mode)) {
-		free(target);
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: is %s, not a regular file", path,
-		                 S_ISDIR(about->st_mode) ? "a folder" : "a special file");
-	}
-	*out = target;
-	return BP_OK;
+	else
+		*out = target;
+	return status;
 }
 
 #define UNFINISHED ".brdfpack-"

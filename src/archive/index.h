@@ -25,7 +25,7 @@ static inline size_t index_fixed_bytes(uint32_t level) { return level ? 4 + 8 + 
 /* -- writing -- */
 
 struct index_builder {
-	struct byte_buffer entries; /* leaf entries as they come: bytes of a page without head */
+	struct byte_buffer entries; /* leaf entries as they come: bytes of a page without head; the owner frees it */
 	uint64_t count;
 };
 
@@ -38,7 +38,6 @@ typedef bp_status index_page_fn(void *user, const uint8_t page[PAGE_BYTES], bp_e
 /* Lays out all levels. *page_count and *depth are 0 when nothing was added. */
 bp_status index_write(const struct index_builder *builder, index_page_fn *write, void *user, uint32_t *page_count,
                       uint32_t *depth, bp_error *error);
-void index_builder_free(struct index_builder *builder);
 
 /* -- reading -- */
 

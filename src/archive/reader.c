@@ -11,10 +11,10 @@
 struct bp_archive {
 	struct system_file *file; /* NULL: read through source */
 	bp_source source;
-	char *path; /* "" where there is none */
 	struct archive_header header;
 	_Atomic uint64_t *bytes_read; /* apart, so that a const handle can count */
 	struct index_page root;       /* count 0 when the archive is empty */
+	char path[];                  /* "" where there is none */
 };
 
 bp_status archive_read(const struct bp_archive *archive, uint64_t offset, void *bytes, size_t count, bp_error *error)
@@ -88,15 +88,13 @@ static bp_status archive_begin(struct bp_archive *archive, uint64_t file_bytes, 
 
 static bp_status archive_new(const char *path, struct bp_archive **out, bp_error *error)
 {
-	struct bp_archive *archive = calloc(1, sizeof *archive);
-	if (!archive)
-		return error_memory(error, sizeof *archive);
 	const size_t path_bytes = strlen(path) + 1;
-	archive->path = malloc(path_bytes);
-	archive->bytes_read = calloc(1, sizeof *archive->bytes_read);
-	if (!archive->path || !archive->bytes_read) {
+	struct bp_archive *archive = calloc(1, sizeof *archive + path_bytes);
+	if (archive)
+		archive->bytes_read = calloc(1, sizeof *archive->bytes_read);
+	if (!archive || !archive->bytes_read) {
 		bp_archive_close(archive);
-		return error_memory(error, path_bytes);
+		return error_memory(error, sizeof *archive + path_bytes);
 	}
 	memcpy(archive->path, path, path_bytes);
 	*out = archive;
@@ -158,7 +156,6 @@ void bp_archive_close(bp_archive *archive)
 	if (archive->source.close)
 		archive->source.close(archive->source.user);
 	system_file_close(archive->file);
-	free(archive->path);
 	free((void *)archive->bytes_read);
 	free(archive);
 }

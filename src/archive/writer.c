@@ -147,6 +147,6 @@ void archive_writer_discard(struct archive_writer *writer)
 		return;
 	output_file_discard(&writer->file);
 	byte_buffer_free(&writer->pending);
-	index_builder_free(&writer->index);
+	byte_buffer_free(&writer->index.entries);
 	free(writer);
 }

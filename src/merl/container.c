@@ -169,9 +169,7 @@ bp_status container_open(const char *path, enum container_order order, const cha
 	const int filters = archive_filter_count(container->archive); /* one of them is the file itself */
 	container->pending = answer == ARCHIVE_OK || answer == ARCHIVE_WARN;
 	container->finished = answer == ARCHIVE_EOF;
-	if (container->finished)
-		container->sums.remark = container_emptiness(container->fd);
-	else if (!container->pending)
+	if (!container->pending && !container->finished)
 		status = refuse(container, "not readable as tar or zip", error);
 	locale_leave(before);
 	/* Any bytes at all pass for "raw" and for an empty tar: only a compressed file may be the one, and zeros the other. */
@@ -181,8 +179,10 @@ bp_status container_open(const char *path, enum container_order order, const cha
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "neither tar nor zip");
 	if (status != BP_OK && status != BP_ERROR_UNSUPPORTED && status != BP_ERROR_MEMORY && container_fault(container->fd))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", container_fault(container->fd));
-	else if (status == BP_OK && !container->sums.remark && format_of(container) == ARCHIVE_FORMAT_ZIP)
+	else if (status == BP_OK && (container->finished || format_of(container) == ARCHIVE_FORMAT_ZIP))
 		container->sums.remark = container_fault(container->fd);
+	if (container->finished && !container->sums.remark)
+		container->sums.remark = "there is no file in it";
 	if (status == BP_OK && raw && !(container->raw_name = raw_member_name(path)))
 		status = error_memory(error, 256);
 out:

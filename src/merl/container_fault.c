@@ -95,9 +95,3 @@ const char *container_fault(int fd)
 }
 
 const char *container_rest(int fd, int64_t end) { return all_zeros(fd, (off_t)end) ? NULL : REST; }
-
-const char *container_emptiness(int fd)
-{
-	const char *fault = container_fault(fd);
-	return fault ? fault : "there is no file in it";
-}

@@ -13,6 +13,7 @@ struct input {
 	struct merl_reading how;
 	uint64_t available; /* bytes of the whole, where that is known; else UINT64_MAX */
 	uint64_t done;
+	struct carried carried; /* what the file carried, where how.carried asks for it */
 };
 
 /*

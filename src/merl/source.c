@@ -27,19 +27,17 @@ static void notice(struct source_list *list, enum source_notice kind, const char
 static bp_status refuse(struct source_list *list, const char *name, const char *path, const char *member, const char *reason,
                         bp_error *error)
 {
-	struct source_item item = {
-		.name = source_text_shown(name), .path = strdup(path), .member = member ? source_text_shown(member) : NULL};
+	struct source_item item;
 	char *where = NULL;
-	bp_status status = BP_OK;
-	if (!item.name || !item.path || (member && !item.member) ||
-	    asprintf(&where, "%s%s%s", path, member ? ": " : "", member ? item.member : "") < 0) {
+	bp_status status = source_item_fill(&item, name, path, member, true, error);
+	if (!status && asprintf(&where, "%s%s%s", path, member ? ": " : "", member ? item.member : "") < 0) {
 		where = NULL;
 		status = error_memory(error, strlen(path));
-	} else if (list->options.refused) {
-		list->options.refused(list->options.user, &item, reason);
-	} else if (list->options.notice) {
-		list->options.notice(list->options.user, SOURCE_DAMAGED, where, reason);
 	}
+	if (!status && list->options.refused)
+		list->options.refused(list->options.user, &item, reason);
+	else if (!status && list->options.notice)
+		list->options.notice(list->options.user, SOURCE_DAMAGED, where, reason);
 	list->refused_count++;
 	free(where);
 	source_item_clear(&item);
@@ -51,22 +49,24 @@ static bp_status item_add(struct source_list *list, const char *path, const stru
 {
 	char name[SOURCE_STEM_BYTES];
 	bp_error why;
-	const bp_status fault = source_name_make(path, member ? member->path : NULL, member ? member->fault : NULL, name, &why);
+	const char *const inner = member ? member->path : NULL;
+	const bp_status fault = source_name_make(path, inner, member ? member->fault : NULL, name, &why);
 	if (!source_is_wanted(list, name)) {
 		list->unwanted_count++;
 		return BP_OK;
 	}
 	if (fault)
-		return refuse(list, name, path, member ? member->path : NULL, why.message, error);
+		return refuse(list, name, path, inner, why.message, error);
 	struct source_item *items = memory_grown(list->items, list->item_count, sizeof *items);
 	if (!items)
 		return error_memory(error, 2 * list->item_count * sizeof *items);
 	list->items = items;
-	bp_status status = source_item_fill(&items[list->item_count], name, path, member, error);
-	if (status != BP_OK)
+	struct source_item *item = &items[list->item_count];
+	const bp_status status = source_item_fill(item, name, path, inner, false, error);
+	if (status)
 		return status;
-	if (!member)
-		items[list->item_count].bytes = bytes;
+	item->ordinal = member ? member->ordinal : 0;
+	item->bytes = member ? member->bytes : bytes;
 	list->item_count++;
 	return BP_OK;
 }

@@ -86,8 +86,11 @@ const struct source_item *source_list_find(const struct source_list *list, const
  */
 bp_status source_stream_next(struct source_list *list, size_t number, struct container *stream, struct source_item *out,
                              bool *more, bp_error *error);
-/* An item's strings: copies are made (BP_ERROR_MEMORY: none), and freed. member may be NULL. */
-bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member,
+/*
+ * An item's strings: copies are made, of name and member as people are shown them where the item is refused (BP_ERROR_MEMORY:
+ * none), and freed. member may be NULL.
+ */
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const char *member, bool refused,
                            bp_error *error);
 void source_item_clear(struct source_item *item);
 

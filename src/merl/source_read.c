@@ -15,19 +15,15 @@ void source_item_clear(struct source_item *item)
 	*item = (struct source_item){0};
 }
 
-bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member,
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const char *member, bool refused,
                            bp_error *error)
 {
-	*item = (struct source_item){.name = strdup(name), .path = strdup(path), .member = member ? strdup(member->path) : NULL};
-	if (!item->name || !item->path || (member && !item->member)) {
-		source_item_clear(item);
-		return error_memory(error, strlen(path));
-	}
-	if (member) {
-		item->ordinal = member->ordinal;
-		item->bytes = member->bytes;
-	}
-	return BP_OK;
+	char *(*const copy)(const char *) = refused ? source_text_shown : strdup;
+	*item = (struct source_item){.name = copy(name), .path = strdup(path), .member = member ? copy(member) : NULL};
+	if (item->name && item->path && (!member || item->member))
+		return BP_OK;
+	source_item_clear(item);
+	return error_memory(error, strlen(path));
 }
 
 void source_licences_take(struct source_list *list, const char *path, const struct container *container)
@@ -46,25 +42,12 @@ bool source_is_wanted(const struct source_list *list, const char *name)
 static bp_status member_take(struct source_list *list, const char *path, const struct container_member *member, const char *name,
                              bp_status fault, struct source_item *out, bp_error *error)
 {
-	bp_status status = fault ? fault : source_name_claim(&list->names, name, path, member->path, error);
-	bp_error memory;
-	if (source_item_fill(out, name, path, member, &memory)) {
-		*error = memory;
-		return memory.status;
-	}
-	if (!status)
-		return BP_OK;
-	char *shown = source_text_shown(out->name), *shown_member = source_text_shown(out->member);
-	if (shown && shown_member) {
-		free(out->name);
-		free(out->member);
-		out->name = shown;
-		out->member = shown_member;
-	} else {
-		free(shown);
-		free(shown_member);
-	}
-	list->refused_count++;
+	const bp_status status = fault ? fault : source_name_claim(&list->names, name, path, member->path, error);
+	if (source_item_fill(out, name, path, member->path, status != BP_OK, error))
+		return BP_ERROR_MEMORY;
+	out->ordinal = member->ordinal;
+	out->bytes = member->bytes;
+	list->refused_count += status != BP_OK;
 	return status;
 }
 
