@@ -6,12 +6,13 @@
 #include <string.h>
 #include <strings.h>
 
+#include "name.h"
 #include "source_names.h"
 
 static bool is_licence(const char *path)
 {
 	static const char *const BEGINNINGS[] = {"copying", "copyright", "notice", "terms"};
-	const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+	const char *name = name_in_path(path);
 	for (size_t n = 0; n < sizeof BEGINNINGS / sizeof *BEGINNINGS; n++)
 		if (strncasecmp(name, BEGINNINGS[n], strlen(BEGINNINGS[n])) == 0)
 			return true;

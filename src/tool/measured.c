@@ -50,7 +50,7 @@ bp_status measured_set_find(struct measured_set *set, const char *folder, bp_err
 	const bp_status status = source_scan(&folder, 1, &options, &set->sources, error);
 	free(wanted.name);
 	for (size_t s = 0; status == BP_OK && s < set->sources.stream_count; s++)
-		report_warning(set->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
+		report_warning(set->sources.streams[s].path, NULL, "passed over: a compressed tar cannot be searched; unpack it");
 	for (size_t n = 0; status == BP_OK && n < set->count; n++)
 		set->item[n].source = source_list_find(&set->sources, set->name[n]);
 	return status;

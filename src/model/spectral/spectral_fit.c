@@ -105,14 +105,14 @@ static bp_status seen_cells(const struct lattice *lattice, struct lattice *out, 
 	*counted = malloc(cells);
 	if (!*counted)
 		return error_memory(error, cells);
-	bp_status status = lattice_seen(lattice->dims, *counted, error);
-	for (size_t n = 0; !status && n < cells; n++)
+	lattice_seen(lattice->dims, *counted);
+	for (size_t n = 0; n < cells; n++)
 		count += (*counted)[n] &= lattice->valid[n];
 	if (count) {
 		out->valid = *counted;
 		out->valid_count = count;
 	}
-	return status;
+	return BP_OK;
 }
 
 /* Logarithms in the making: of the first `done` cells of every table, with their sums. */

@@ -41,12 +41,13 @@ static bp_status room_fit(struct decoded_room *room, const struct model *model, 
 	if (status)
 		return status;
 	room->below = malloc(cells);
-	status =
-		room->below ? lattice_below_horizon(model->dims, model->horizon_limit, room->below, error) : error_memory(error, cells);
-	room->limit = model->horizon_limit;
-	if (status)
+	if (!room->below) {
 		room_free(room);
-	return status;
+		return error_memory(error, cells);
+	}
+	lattice_below_horizon(model->dims, model->horizon_limit, room->below);
+	room->limit = model->horizon_limit;
+	return BP_OK;
 }
 
 /* What to write: a decoded table with its record, the table alone, the parameters, or a renderer's file. */

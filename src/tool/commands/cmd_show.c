@@ -32,6 +32,7 @@ struct show {
 	struct material material;
 	struct lattice reference;    /* of --measured */
 	const struct lattice *truth; /* the reference, the material's own, or NULL */
+	uint8_t *counting;           /* where there is no truth: cells that are drawn */
 	struct density_source measured, decoded;
 	double error_before[LATTICE_EXTENT_MAX], error_after[LATTICE_EXTENT_MAX];
 	struct figure figure;
@@ -121,15 +122,11 @@ static bp_status material_pack(struct show *show, const struct show_options *opt
 static bp_status show_measure(struct show *show, bp_error *error)
 {
 	const struct material *material = &show->material;
-	uint8_t *counting = NULL;
 	bp_status status;
 
 	if (!show->truth) {
-		if ((status = material_counting_cells(&material->head, &counting, error)) != BP_OK)
-			return status;
-		status = density_source_decoded(&material->table, counting, &show->decoded, error);
-		free(counting);
-		return status;
+		status = material_counting_cells(&material->head, &show->counting, error);
+		return status ? status : density_source_decoded(&material->table, show->counting, &show->decoded, error);
 	}
 	if (comparison_dims_check(show->truth->dims, material->table.dims, error))
 		return BP_ERROR_BAD_INPUT;
@@ -232,6 +229,7 @@ static int show_main(const struct command *self, int argc, char **argv)
 		code = show_draw(show, &options);
 	density_source_free(&show->measured);
 	density_source_free(&show->decoded);
+	free(show->counting);
 	lattice_free(&show->reference);
 	material_free(&show->material);
 	free(show);
