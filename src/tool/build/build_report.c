@@ -14,7 +14,7 @@ static const char *const ORIGIN_NAMES[] = {
 /* The warning that values were taken for marks. */
 static void holes_describe(const struct outcome *outcome, char text[WARNING_BYTES])
 {
-	const struct holes *holes = &outcome->holes;
+	const struct holes *holes = &outcome->delivery.holes;
 	const double *v = holes->value;
 	char what[100], black[120] = "";
 
@@ -39,10 +39,10 @@ static void holes_describe(const struct outcome *outcome, char text[WARNING_BYTE
 static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES], int *said)
 {
 	int count = 0;
-	if (outcome->source.nonfinite_count > 0)
+	if (outcome->delivery.source.nonfinite_count > 0)
 		snprintf(texts[count++], WARNING_BYTES, "%" PRIu64 " cells are NaN or infinite; they are treated as not measured",
-		         outcome->source.nonfinite_count);
-	if (outcome->holes.count > 0)
+		         outcome->delivery.source.nonfinite_count);
+	if (outcome->delivery.holes.count > 0)
 		holes_describe(outcome, texts[count++]);
 	*said = count;
 	for (int c = 0; c < 3; c++)
@@ -95,7 +95,7 @@ static void material_json(const struct item *item, const char *label, const stru
 	for (int stage = 0; stage < STAGE_COUNT; stage++)
 		json_number(&json, stage_name((enum stage)stage), outcome->stage_seconds[stage]);
 	json_close(&json);
-	json_string(&json, "record", ORIGIN_NAMES[outcome->origin]);
+	json_string(&json, "record", ORIGIN_NAMES[outcome->delivery.origin]);
 	json_string(&json, "profile", profile_name(outcome->head.profile));
 	facts_brief(&json, &outcome->head);
 	json_array(&json, "warnings");

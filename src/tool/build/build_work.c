@@ -1,4 +1,4 @@
-#include "build_work.h"
+#include "build_state.h"
 
 #include "archive/merge.h"
 #include "codec/record_carried.h"

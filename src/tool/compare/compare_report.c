@@ -176,11 +176,11 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 	if (!column)
 		return error_memory(error, count * sizeof *column);
 	for (size_t n = 0; n < count; n++)
-		confirmed += items[n].done && !items[n].failed && items[n].result.confirmed;
+		confirmed += items[n].done && !items[n].error.status && items[n].result.confirmed;
 	for (int f = 0; f < FIGURE_COUNT; f++) {
 		used = 0;
 		for (size_t n = 0; n < count; n++)
-			if (items[n].done && !items[n].failed) {
+			if (items[n].done && !items[n].error.status) {
 				figures_of(&items[n], values);
 				column[used++] = values[f];
 			}

@@ -71,20 +71,18 @@ static bp_status decoded_draw(struct page_job *job, struct subject *subject, bp_
 /* The same beside the measured table. A file that cannot be read is told in the page, and the material is drawn alone. */
 static bp_status measured_draw(struct page_job *job, struct subject *subject, bp_error *error)
 {
-	struct holes holes;
 	bp_error reason;
-	bp_status status = source_item_read(subject->item->source, &job->cursor, &(struct merl_reading){.any_dims = true},
-	                                    &subject->lattice, &reason);
-	if (status == BP_OK)
-		status = lattice_take_holes(&subject->lattice, subject->head.options.zeros, &holes, &reason);
-	if (status == BP_OK)
+	bp_status status = measured_read(subject->item->source, &job->cursor, &subject->head, &subject->lattice, NULL, &reason);
+	const bool read = status == BP_OK;
+	if (read)
 		status =
 			comparison_measure(&job->plans, &subject->lattice, &subject->table, &subject->comparison, subject->spheres, &reason);
 	subject->measured = status == BP_OK;
 	subject->energy = subject->comparison.decoded;
 	if (status == BP_OK)
 		return BP_OK;
-	snprintf(subject->missing, sizeof subject->missing, "not compared: %s: %s", subject->item->source->path, reason.message);
+	snprintf(subject->missing, sizeof subject->missing, "not compared: %s%s%s", read ? subject->item->source->path : "",
+	         read ? ": " : "", reason.message);
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		picture_free(&subject->spheres[l]);
 	return status == BP_ERROR_MEMORY ? error_memory(error, 0) : decoded_draw(job, subject, error);
