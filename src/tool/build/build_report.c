@@ -7,7 +7,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-enum { WARNINGS_MAX = 3, WARNING_BYTES = 400 };
+enum { WARNINGS_MAX = 4, WARNING_BYTES = 400 };
 static const char *const ORIGIN_NAMES[] = {
 	[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_RESUMED] = "resumed", [RECORD_KEPT] = "kept"};
 
@@ -44,6 +44,8 @@ static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX]
 		         outcome->delivery.source.nonfinite_count);
 	if (outcome->delivery.holes.count > 0)
 		holes_describe(outcome, texts[count++]);
+	if (outcome->delivery.black)
+		snprintf(texts[count++], WARNING_BYTES, "every value is 0: it reflects no light at all; is the file what it should be?");
 	*said = count;
 	for (int c = 0; c < 3; c++)
 		if (!outcome->head.colour[c].converged) {

@@ -25,6 +25,7 @@ struct delivery {
 	struct record_source source; /* the file that was read; of a record that was kept, its head has the measured one */
 	struct holes holes;          /* what was made of values that stand for "not measured" */
 	enum record_origin origin;
+	bool black; /* every measured cell is 0 */
 };
 
 /* What became of one material: everything that its report needs. */

@@ -251,7 +251,7 @@ const struct command command_compare = {
 	.description = "measure how far an archive is from the measured files",
 	.usage = "Usage: brdfpack compare [OPTION]... ARCHIVE MEASURED [NAME]...\n"
 			 "Compares materials of the archive (all, or those named) with the MERL files of the same names in the folder\n"
-			 "MEASURED (or zip), and prints one row per material, then median, worst and mean:\n"
+			 "MEASURED (or zip), and prints one row per material, then median, worst and mean, in two blocks:\n"
 			 "  PSNR       of a rendered sphere in dB, from 8-bit and from float sRGB values\n"
 			 "  dE ITP     mean colour difference of its pixels (ITU-R BT.2124); 1 is just noticeable at best\n"
 			 "  log RMSE   root mean square of log10((decoded + 1e-3)/(measured + 1e-3))\n"

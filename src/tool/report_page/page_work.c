@@ -219,11 +219,11 @@ static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t 
 static void layers_write(FILE *out, const struct subject *subject)
 {
 	const struct record_head *head = &subject->head;
-	html_table(out, "Layers: what loading up to each costs, and the error that is left", "layers", "bytes", "log RMSE",
+	html_table(out, "Layers: what loading up to each costs, and the error that is left", "layer", "bytes", "log RMSE",
 	           "below the horizon too", "cube-root RMSE", "largest relative error", NULL);
 	fputs("</tr></thead><tbody>", out);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.5f<td>%.3g</tr>", l + 1, head->layers[l].bytes,
+		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.5f<td>%.3g</tr>", l, head->layers[l].bytes,
 		        head->layers[l].fidelity.seen_log_rmse, head->layers[l].fidelity.log_rmse,
 		        head->layers[l].fidelity.cube_root_rmse, head->layers[l].fidelity.largest_relative);
 	fputs("</tbody></table>", out);
