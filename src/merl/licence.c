@@ -28,6 +28,11 @@ void licences_note(struct licences *licences, const char *path, const char *memb
 		free(shown);
 		shown = whole;
 	}
+	for (size_t n = 0; shown && n < licences->count; n++)
+		if (!strcmp(licences->path[n], shown)) { /* of an input that was given twice */
+			free(shown);
+			shown = NULL;
+		}
 	if (shown)
 		licences->path[licences->count++] = shown;
 }

@@ -3,7 +3,6 @@
 #include "archive/writer.h"
 #include "error.h"
 #include "build_inputs.h"
-#include "build_work.h"
 #include "memory.h"
 #include "outcomes.h"
 #include "tool/command.h"
