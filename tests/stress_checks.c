@@ -280,7 +280,7 @@ static void check_regression(const struct trial *trial)
 	for (int c = 0; c < 3; c++)
 		unit = fmax(unit, largest_of(l->rgb[c], cells));
 	for (int c = 0; c < 3; c++) {
-		struct robust_fit fit;
+		struct colour_fit fit;
 		size_t n = 0;
 		for (size_t i = 0; i < cells; i++)
 			if (l->valid[i]) {
@@ -292,12 +292,12 @@ static void check_regression(const struct trial *trial)
 			continue; /* GSL fails silently: on a constant x, and on squares beyond the range of double */
 		const struct oracle slow = slow_fit(x, y, n), gsl = gsl_fit(x, y, n);
 		if (!slow.status && isfinite(slow.slope)) {
-			const double deviation = oracle_deviation(fit.intercept, fit.slope, &slow, x, n);
+			const double deviation = oracle_deviation(fit.diffuse, fit.specular, &slow, x, n);
 			note(trial, REGRESSION, deviation_counted(trial, deviation, 1, fit.iterations == slow.iterations, &slow, x, y, n));
 		}
 		/* Where the remaining weights leave a constant x, no line is determined, and the slow reference gives NaN. */
 		if (gsl.status == GSL_SUCCESS && isfinite(gsl.slope) && isfinite(slow.slope)) {
-			const double deviation = oracle_deviation(fit.intercept, fit.slope, &gsl, x, n);
+			const double deviation = oracle_deviation(fit.diffuse, fit.specular, &gsl, x, n);
 			/* GSL adds plainly: a sum of n terms errs by up to n half units. */
 			note(trial, GSL, deviation_counted(trial, deviation, (double)n, gsl.iterations == slow.iterations, &slow, x, y, n));
 		}

@@ -181,22 +181,18 @@ static uint32_t bracket_next(const struct bracket *b, double max_error)
 
 /*
  * The smallest record whose error is at most max_error, to 1 % of its size: the error does not fall with every byte, so a smaller
- * record may exist that this does not find.
+ * record may exist that this does not find. best->record is NULL before, and the caller's to free, also after a failure.
  */
 static bp_status record_search(const struct packing *packing, double max_error, struct packed *best, bp_error *error)
 {
 	struct bracket bracket = {.low = RECORD_BUDGET_MIN - 1};
 	uint32_t size = BUDGET_USUAL;
 
-	best->record = NULL;
 	while (!bracket.high || (bracket.high > bracket.low && bracket.high - bracket.low > bracket.high / 100 + 1)) {
 		struct packed trial = {.record = NULL};
 		bp_status status = record_build(packing, size, &trial, error);
-		if (status && (status != BP_ERROR_LIMIT || size == RECORD_BUDGET_MAX)) {
-			free(best->record);
-			best->record = NULL;
+		if (status && (status != BP_ERROR_LIMIT || size == RECORD_BUDGET_MAX))
 			return status;
-		}
 		const double reached = status ? INFINITY : last_error(&trial);
 		if (reached > max_error && size == RECORD_BUDGET_MAX) {
 			status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "an error of %g cannot be met: the least is %g, in %zu bytes",

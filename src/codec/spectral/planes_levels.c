@@ -121,9 +121,9 @@ bp_status planes_quantise(struct planes *p, float *const coefficient[3], float s
 	return BP_OK;
 }
 
-/* Counts the levels of one band of one harmonic and stores the first `room` of them. */
+/* Stores the levels of one band of one harmonic, which are at most its cells, and returns how many they are. */
 static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t harmonic, uint32_t lowest, uint32_t b,
-                             struct spectral_level *out, uint32_t room)
+                             struct spectral_level *out)
 {
 	const struct band *band = &p->bands.band[b];
 	const uint32_t *slot = p->slot[field] + (size_t)(harmonic + 2) * p->bands.blocks + band->block_at;
@@ -145,10 +145,8 @@ static uint32_t band_collect(const struct planes *p, uint32_t field, uint32_t ha
 					const int32_t size = (int32_t)(block->known[k] >> 2 >> lowest << lowest);
 					if (!size)
 						continue;
-					if (n < room)
-						out[n] = (struct spectral_level){.at = (uint32_t)(field0 + (row + x) * p->dims.phi_d),
-						                                 .level = block->sign[k] == 2 ? -size : size};
-					n++;
+					out[n++] = (struct spectral_level){.at = (uint32_t)(field0 + (row + x) * p->dims.phi_d),
+					                                   .level = block->sign[k] == 2 ? -size : size};
 				}
 			}
 		}
@@ -173,7 +171,7 @@ bp_status planes_collect(const struct planes *p, uint32_t end, struct spectral_l
 				levels = larger;
 			}
 			for (uint32_t b = 0; b < p->bands.count; b++)
-				n += band_collect(p, f, m, lowest, b, levels + n, room - n);
+				n += band_collect(p, f, m, lowest, b, levels + n);
 		}
 	*out = levels;
 	*count = n;

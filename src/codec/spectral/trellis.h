@@ -19,7 +19,7 @@ struct trellis_cell {
 	float
 		beyond; /* of the size, in steps: in: less level, -0.4 to 0.6; out: less what the level stands for, without its centre */
 	uint32_t place;    /* the caller's own */
-	uint8_t around;    /* in: levels around it, as a class of trellis_around */
+	uint8_t around;    /* in: levels around it, as a class of trellis_classes */
 	uint8_t quantiser; /* out: of a level that is not 0 */
 };
 

@@ -1,8 +1,8 @@
 /*
  * kernels.h: hot loops that are compiled twice and chosen once.
  *
- * The loops of a wing stand in its files NAME.inc.h as static functions KERNEL(name). WING_kernels.inc.h includes them all and
- * ends in one table of function pointers, whose type is in WING_kernels.h; WING_kernels.c compiles that text for any processor,
+ * The loops of a wing are static functions KERNEL(name), in WING_kernels.inc.h or in files NAME.inc.h that it includes. It ends
+ * in one table of function pointers, whose type is in WING_kernels.h; WING_kernels.c compiles that text for any processor,
  * WING_kernels_avx2.c for AVX2.
  * To add a loop: write KERNEL(loop) in an .inc.h, add a member to WING_kernels.h and an initialiser to WING_kernels.inc.h.
  *

@@ -107,17 +107,6 @@ static double light_drawn(const struct importance *m, const struct lattice *latt
 	return (cell_mean(lattice, row + k, scale) * i + cell_mean(lattice, row + d.phi_d - 1 - k, scale) * o) / 2;
 }
 
-static double largest_value(const struct lattice *lattice)
-{
-	double largest = 0;
-
-	for (int c = 0; c < 3; c++)
-		for (size_t i = 0; i < lattice_cells(lattice->dims); i++)
-			if (lattice->valid[i] && lattice->rgb[c][i] > largest)
-				largest = lattice->rgb[c][i];
-	return largest;
-}
-
 double importance_unit(const struct importance *m, const struct lattice *lattice)
 {
 	static const double STRONG[] = {3, 1.5, 1.5, 1, 0.6};
@@ -126,7 +115,7 @@ double importance_unit(const struct importance *m, const struct lattice *lattice
 	uint64_t state = 1;
 	int exponent;
 
-	frexp(largest_value(lattice), &exponent);
+	frexp(select_largest(lattice), &exponent);
 	const double scale = ldexp(1, exponent < -1000 ? 1000 : -exponent); /* the largest becomes about 1: no sum overflows */
 	for (int n = 0; n < PIXELS; n++) {
 		pixel[n] = 0;

@@ -18,7 +18,7 @@ uint32_t paper_shared_from(uint32_t theta_h)
 	return i;
 }
 
-void paper_field_extents(struct lattice_dims dims, enum paper_field field, uint32_t *rows, uint32_t *columns)
+static void field_extents(struct lattice_dims dims, enum paper_field field, uint32_t *rows, uint32_t *columns)
 {
 	*rows = field == PAPER_SLICE ? dims.theta_d : dims.theta_h;
 	*columns = field == PAPER_HD ? dims.theta_d : dims.phi_d;
@@ -28,7 +28,7 @@ struct wavelet_plane paper_plane(struct lattice_dims dims, enum paper_field fiel
 {
 	uint32_t rows, columns;
 
-	paper_field_extents(dims, field, &rows, &columns);
+	field_extents(dims, field, &rows, &columns);
 	return wavelet_plane_for(field == PAPER_SLICE ? WAVELET_DAUBECHIES : WAVELET_HAAR, rows, columns, field != PAPER_HD);
 }
 
@@ -62,7 +62,7 @@ uint32_t paper_keep(struct lattice_dims dims, enum paper_field field)
 {
 	uint32_t rows, columns;
 
-	paper_field_extents(dims, field, &rows, &columns);
+	field_extents(dims, field, &rows, &columns);
 	const uint32_t one = rows * columns / (field == PAPER_SLICE ? PAPER_KEEP_SLICE : PAPER_KEEP_PAIR);
 	return (one ? one : 1) * (field == PAPER_SLICE ? paper_shared_from(dims.theta_h) + 1 : 1);
 }

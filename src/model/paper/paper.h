@@ -36,8 +36,7 @@ enum paper_field { PAPER_HD, PAPER_HPHI, PAPER_SLICE };
 /* The theta_h cell from which on all slices share one: the first i with (i/H)^2 90 >= 40 degrees; 60 of 90. */
 uint32_t paper_shared_from(uint32_t theta_h);
 
-/* Rows and columns of a field, its plane, and coefficients of that. */
-void paper_field_extents(struct lattice_dims dims, enum paper_field field, uint32_t *rows, uint32_t *columns);
+/* The plane of a field, and coefficients of that. */
 struct wavelet_plane paper_plane(struct lattice_dims dims, enum paper_field field);
 uint32_t paper_plane_cells(struct lattice_dims dims, enum paper_field field);
 

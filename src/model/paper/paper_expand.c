@@ -100,7 +100,7 @@ static bp_status slices_begin(struct lattice_dims d, const struct paper_channel 
 	const size_t bytes = (hd + hphi + slice + d.phi_d) * sizeof(float);
 	const bool pairs = layers > PAPER_LAYER_PAIRS;
 
-	*s = (struct slices){.dims = d, .channel = channel, .with_slices = layers > PAPER_LAYER_SLICES && channel->slice_count};
+	*s = (struct slices){.dims = d, .channel = channel, .with_slices = layers > PAPER_LAYER_SLICES, .dphi_is_one = true};
 	s->hd = malloc(bytes);
 	if (!s->hd)
 		return error_memory(error, bytes);
@@ -120,9 +120,7 @@ static void slice_expand(struct slices *s, uint32_t i, float *out)
 	const struct lattice_dims d = s->dims;
 	const float h = channel->marginal[0][i], *hd = s->hd + (size_t)i * d.theta_d, *hphi = s->hphi + (size_t)i * d.phi_d;
 
-	if (!s->with_slices) {
-		s->dphi_is_one = true;
-	} else if (i < channel->slice_count) { /* above, the last one stays */
+	if (s->with_slices && i < channel->slice_count) { /* above, the last one stays */
 		s->dphi_is_one = channel->slice[i].count == 0;
 		if (!s->dphi_is_one)
 			field_expand(s->codec, &channel->slice[i], s->dphi);

@@ -98,11 +98,13 @@ float gains_keep(const float *gain, size_t n, size_t keep, uint8_t *kept)
 		count[bits_of_float(gain[i]) >> SHIFT]++;
 	while (edge > 1 && count[edge] <= keep)
 		keep -= count[edge--];
-	for (size_t i = 0; i < n; i++) {
-		const uint32_t bin = bits_of_float(gain[i]) >> SHIFT;
-		kept[i] = bin > edge || (bin == edge && keep > 0);
-		keep -= bin == edge && keep > 0;
-	}
+	for (size_t i = 0; i < n; i++)
+		kept[i] = bits_of_float(gain[i]) >> SHIFT >= edge;
+	for (size_t i = n, surplus = count[edge] > keep ? count[edge] - keep : 0; surplus > 0;)
+		if (bits_of_float(gain[--i]) >> SHIFT == edge) {
+			kept[i] = 0;
+			surplus--;
+		}
 	return float_of_bits(edge << SHIFT);
 }
 

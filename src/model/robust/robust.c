@@ -118,7 +118,7 @@ static struct robust_sample picks_copy(struct design *design)
 }
 
 /* The regression of y on x of a prepared design: coefficients in the scaled units. n >= 2. At most `limit` iterations. */
-static void design_iterate(struct design *design, uint32_t limit, struct robust_fit *out)
+static void design_iterate(struct design *design, uint32_t limit, struct colour_fit *out)
 {
 	struct walk walk = {
 		.kernels = robust_kernels_get(),
@@ -131,35 +131,35 @@ static void design_iterate(struct design *design, uint32_t limit, struct robust_
 
 	walk_start(&walk);
 	design->anchor.placed = false;
-	out->converged = false;
+	out->converged = 0;
 	out->iterations = 0;
 	while (!out->converged && out->iterations < limit) {
 		out->iterations++;
 		walk_step(&walk, limit - out->iterations);
 		out->converged = line_settled(&walk.before, &walk.line);
 	}
-	out->rejected = walk.sums.rejected;
-	out->slope = walk.line.slope;
-	out->intercept = line_intercept(&walk.line);
+	out->rejected = (double)walk.sums.rejected / (double)design->n;
+	out->specular = walk.line.slope;
+	out->diffuse = line_intercept(&walk.line);
 }
 
 /*
  * Where most of a channel is dark, its line sinks towards 0 for as long as there are numbers to sink to; where that ends would
  * hang on the unit of measure. Terms beyond the range of single precision are 0: the largest x and y are about 1 here.
  */
-static void fit_still(struct robust_fit *fit)
+static void fit_still(struct colour_fit *fit)
 {
-	if (fabs(fit->intercept) < FLT_MIN)
-		fit->intercept = 0;
-	if (fabs(fit->slope) < FLT_MIN)
-		fit->slope = 0;
+	if (fabs(fit->diffuse) < FLT_MIN)
+		fit->diffuse = 0;
+	if (fabs(fit->specular) < FLT_MIN)
+		fit->specular = 0;
 }
 
 /*
  * The regression of design->y on unit * design->x, n of each: both are scaled by powers of two to about 1, and the line back. The
  * unit enters by its exponent and mantissa, so that it may be of any size. `still`: fit_still.
  */
-static void design_fit(struct design *design, double unit, uint32_t limit, bool still, struct robust_fit *out)
+static void design_fit(struct design *design, double unit, uint32_t limit, bool still, struct colour_fit *out)
 {
 	const size_t n = design->n;
 	const int float_exponent = exponent_of(largest_size(design->x, n)), y_exponent = exponent_of(largest_size(design->y, n));
@@ -172,7 +172,7 @@ static void design_fit(struct design *design, double unit, uint32_t limit, bool 
 		design->y[k] = design->y[k] * q.a * q.b;
 	}
 	if (n == 1) {
-		*out = (struct robust_fit){.intercept = design->y[0], .converged = true};
+		*out = (struct colour_fit){.diffuse = design->y[0], .converged = 1};
 	} else {
 		design_prepare(design);
 		design_iterate(design, limit, out);
@@ -180,11 +180,11 @@ static void design_fit(struct design *design, double unit, uint32_t limit, bool 
 	if (still)
 		fit_still(out);
 	const struct power back = power_of(y_exponent), slope = power_of(y_exponent - float_exponent - unit_exponent);
-	out->intercept = out->intercept * back.a * back.b;
-	out->slope = out->slope * slope.a * slope.b;
+	out->diffuse = out->diffuse * back.a * back.b;
+	out->specular = out->specular * slope.a * slope.b;
 }
 
-bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error)
+bp_status robust_fit(const double *x, const double *y, size_t n, struct colour_fit *out, bp_error *error)
 {
 	struct design design;
 
@@ -214,20 +214,10 @@ static bool run_next(const struct lattice *lattice, size_t *start, size_t *end)
 	return true;
 }
 
-struct colour_fit robust_colour(const struct robust_fit *fit, size_t n)
-{
-	return (struct colour_fit){.diffuse = fit->intercept,
-	                           .specular = fit->slope,
-	                           .iterations = fit->iterations,
-	                           .converged = fit->converged,
-	                           .rejected = (double)fit->rejected / (double)n};
-}
-
 bp_status robust_fit_channel(const struct lattice *lattice, int channel, const float *model, double unit, struct colour_fit *out,
                              bp_error *error)
 {
 	const size_t n = lattice->valid_count;
-	struct robust_fit fit;
 	struct design design;
 	size_t k = 0;
 
@@ -240,8 +230,7 @@ bp_status robust_fit_channel(const struct lattice *lattice, int channel, const f
 			for (size_t m = i; m < end; m++)
 				design.x[k + m - i] = (double)model[m];
 		}
-		design_fit(&design, unit, ROBUST_CHANNEL_ITERATIONS_MAX, true, &fit);
-		*out = robust_colour(&fit, n);
+		design_fit(&design, unit, ROBUST_CHANNEL_ITERATIONS_MAX, true, out);
 	}
 	design_free(&design);
 	return status;

@@ -40,30 +40,20 @@
 
 enum { ROBUST_ITERATIONS_MAX = 100, ROBUST_CHANNEL_ITERATIONS_MAX = 5000 };
 
-struct robust_fit {
-	double intercept, slope;
+/* A line; of a channel on its model: measured = diffuse + specular * model (1/sr). */
+struct colour_fit {
+	double diffuse;  /* the intercept; 1/sr */
+	double specular; /* the slope; the model is in 1/sr, so this is a ratio */
 	uint32_t iterations;
-	bool converged;
-	size_t rejected; /* observations of weight 0 in the last iteration */
+	uint32_t converged; /* 1 or 0 */
+	double rejected;    /* share of the observations that had weight 0 in the last iteration */
 };
 
 /*
  * n >= 1 finite observations. One observation: intercept y, slope 0. BP_ERROR_ARGUMENT for n = 0,
  * BP_ERROR_MEMORY. Takes 24 n bytes of its own (32 n while it runs). Deterministic.
  */
-bp_status robust_fit(const double *x, const double *y, size_t n, struct robust_fit *out, bp_error *error);
-
-/* Robust regression of one channel on its model: measured = diffuse + specular * model (1/sr). */
-struct colour_fit {
-	double diffuse;  /* 1/sr */
-	double specular; /* the model is in 1/sr, so this is a ratio */
-	uint32_t iterations;
-	uint32_t converged; /* 1 or 0 */
-	double rejected;    /* share of valid cells with weight 0 */
-};
-
-/* The same figures as those of a channel; n: observations. */
-struct colour_fit robust_colour(const struct robust_fit *fit, size_t n);
+bp_status robust_fit(const double *x, const double *y, size_t n, struct colour_fit *out, bp_error *error);
 
 /*
  * The regression of a channel's measured values (1/sr) on unit * model over the lattice's valid cells; model[cells]. Terms below

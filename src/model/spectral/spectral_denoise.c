@@ -166,14 +166,13 @@ struct rectangle {
  * A row is [columns + 2][P + 2]; its first and last cells are 0, as the first and last lanes are.
  */
 struct squares {
-	float *row[3], *nothing; /* nothing: a row of zeros, for those beyond the band */
-	void *block;
+	float *row[3], *nothing; /* nothing: a row of zeros, for those beyond the band; row[0] owns all */
 };
 
 static bp_status squares_alloc(struct lattice_dims d, struct squares *out, bp_error *error)
 {
 	const size_t row = ((size_t)d.theta_d + 2) * (d.phi_d + 2);
-	float *block = out->block = calloc(4 * row, sizeof *block);
+	float *block = calloc(4 * row, sizeof *block);
 	if (!block)
 		return error_memory(error, 4 * row * sizeof *block);
 	for (int r = 0; r < 3; r++)
@@ -286,7 +285,7 @@ bp_status spectral_denoise(struct spectrum *spectrum, struct lattice_dims d, con
 			field_shrink(&denoiser, d, field[f], &noise);
 		*level = noise.level > *level ? noise.level : *level;
 	}
-	free(denoiser.squares.block);
+	free(denoiser.squares.row[0]);
 	spectrum_turn_free(denoiser.turn);
 	free(denoiser.turned);
 	free(noise.scale);

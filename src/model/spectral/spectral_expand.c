@@ -35,7 +35,8 @@ float spectral_level_value(const struct spectral_model *model, int32_t level, ui
 /* The coefficients that are not 0, ready for the inverse transform. */
 struct terms {
 	struct spectrum_term *term;
-	uint32_t *start; /* start[f P + m]: of field f, harmonic m; 3 P + 1 of them */
+	uint32_t *start;    /* start[f P + m]: of field f, harmonic m; 3 P + 1 of them */
+	uint32_t harmonics; /* one more than the highest with a term; 0 before they are made */
 };
 
 /* What the first `layers` layers hold; the caller frees both arrays, also after a failure. */
@@ -63,8 +64,10 @@ static bp_status terms_make(const struct spectral_model *model, const struct spe
 		const float value = spectral_level_value(model, level.level, lowest, dependent_quantiser(state));
 		if (model->dependent && !lowest)
 			state = dependent_next(state, (uint32_t)level.level & 1);
-		if (value != 0)
+		if (value != 0) {
 			out->term[n++] = spectrum_term_make(inverse, row, harmonic, value);
+			out->harmonics = harmonic < out->harmonics ? out->harmonics : harmonic + 1;
+		}
 	}
 	while (unit <= 3 * p)
 		out->start[unit++] = n;
@@ -99,16 +102,6 @@ static float most_of(double unit)
 	int exponent;
 	frexp(unit, &exponent);
 	return exponent > 1011 - 40 ? (float)(1011 - exponent) : 40;
-}
-
-/* One more than the highest harmonic with a term. */
-static uint32_t harmonics_used(const struct terms *terms, uint32_t p)
-{
-	uint32_t most = 0;
-	for (uint32_t u = 0; u < 3 * p; u++)
-		if (terms->start[u + 1] > terms->start[u] && u % p >= most)
-			most = u % p + 1;
-	return most;
 }
 
 /* `bytes` bytes of values of `size` bytes, each as the one at `value`; twice as many from step to step. */
@@ -171,7 +164,7 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 	if (!status)
 		status = terms_make(model, inverse, layers, &terms, error);
 	if (!status)
-		status = spectrum_rows_create(inverse, model->limit, harmonics_used(&terms, d.phi_d), half, &rows, error);
+		status = spectrum_rows_create(inverse, model->limit, terms.harmonics, half, &rows, error);
 	for (int f = 0; !status && f < 3; f++)
 		status = spectrum_rows_field(rows, f, terms.term, terms.start + (size_t)f * d.phi_d, error);
 	for (uint32_t r = 0; !status && r < count; r += SPECTRUM_BLOCK) {

@@ -44,9 +44,6 @@ struct spectral_kernels {
 	/* out = log2(1 + factor b) where valid, else 0; returns their sum. */
 	double (*spectral_logs)(const double *b, const uint8_t *valid, size_t n, double factor, float *out);
 
-	/* The largest valid b; 0 where none is above 0. */
-	double (*spectral_largest)(const double *b, const uint8_t *valid, size_t n);
-
 	/* Adds w x_i x_j with w = 1/(1 + x_0^2 + x_1^2 + x_2^2) to sums, ij = 00, 01, 02, 11, 12, 22. */
 	void (*spectral_moments)(const float *const x[3], size_t n, double sums[6]);
 

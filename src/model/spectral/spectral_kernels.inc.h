@@ -6,7 +6,6 @@
 #include "cosines.inc.h"
 #include "spectrum_inverse.inc.h"
 #include "spectral_values.inc.h"
-#include "spectral_worths.inc.h"
 
 const struct spectral_kernels KERNEL(spectral_kernels) = {
 	.cosine_product = KERNEL(cosine_product),
@@ -19,7 +18,6 @@ const struct spectral_kernels KERNEL(spectral_kernels) = {
 	.cdf97_forward = KERNEL(cdf97_forward),
 	.cdf97_plane = KERNEL(cdf97_plane),
 	.spectral_logs = KERNEL(spectral_logs),
-	.spectral_largest = KERNEL(spectral_largest),
 	.spectral_moments = KERNEL(spectral_moments),
 	.spectral_values = KERNEL(spectral_values),
 	.spectral_codes = KERNEL(spectral_codes),

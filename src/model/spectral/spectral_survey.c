@@ -7,7 +7,6 @@
 
 #include "error.h"
 #include "spectral.h"
-#include "spectral_kernels.h"
 #include "model/robust/robust.h"
 #include "model/math/select.h"
 
@@ -68,22 +67,11 @@ bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_su
 bp_status spectral_survey_colour(const struct spectral_survey *sample, struct colour_fit colour[3], bp_error *error)
 {
 	for (int c = 0; c < 3; c++) {
-		struct robust_fit fit;
-		bp_status status = robust_fit(sample->x, sample->y[c], sample->n, &fit, error);
+		const bp_status status = robust_fit(sample->x, sample->y[c], sample->n, &colour[c], error);
 		if (status)
 			return status;
-		colour[c] = robust_colour(&fit, sample->n);
 	}
 	return BP_OK;
-}
-
-static double largest_value(const struct lattice *lattice)
-{
-	const size_t cells = lattice_cells(lattice->dims);
-	double largest = 0;
-	for (int c = 0; c < 3; c++)
-		largest = fmax(largest, spectral_kernels_get()->spectral_largest(lattice->rgb[c], lattice->valid, cells));
-	return largest;
 }
 
 /*
@@ -100,7 +88,7 @@ double spectral_survey_unit(struct spectral_survey *sample, const struct lattice
 	const double upper = select_kth(v + half, last + 1 - half, high - half);
 	/* Seldom asked for: a pass over the table. */
 	const bool bright = lattice->most > 0 && median >= lattice->most * 0x1p-24 && median > 0;
-	const double largest = bright ? lattice->most : largest_value(lattice), least = largest * 0x1p-24;
+	const double largest = bright ? lattice->most : select_largest(lattice), least = largest * 0x1p-24;
 
 	if (largest == 0)
 		return 1;

@@ -27,24 +27,6 @@ static double KERNEL(spectral_logs)(const double *b, const uint8_t *valid, size_
 	return KERNEL(float_sum)(out, n);
 }
 
-static double KERNEL(spectral_largest)(const double *b, const uint8_t *valid, size_t n)
-{
-	enum { LANES = 16 };
-	double lane[LANES] = {0};
-	size_t k = 0;
-
-	for (; k + LANES <= n; k += LANES)
-		for (int m = 0; m < LANES; m++) {
-			const double v = valid[k + (size_t)m] ? b[k + (size_t)m] : 0;
-			lane[m] = v > lane[m] ? v : lane[m];
-		}
-	for (; k < n; k++)
-		lane[0] = valid[k] && b[k] > lane[0] ? b[k] : lane[0];
-	for (int m = 1; m < LANES; m++)
-		lane[0] = lane[m] > lane[0] ? lane[m] : lane[0];
-	return lane[0];
-}
-
 static void KERNEL(spectral_moments)(const float *const x[3], size_t n, double sums[6])
 {
 	lanes4 a = {0}, b = {0}, c = {0}, d = {0}, e = {0}, f = {0};
@@ -224,5 +206,29 @@ static void KERNEL(spectral_shrink)(float *x, const float *const square[3], size
 		const float energy = left + here + right + 0.5f * (v[stride - 1] + v[stride + 1]);
 		float keep = 1 - threshold * factor[q] / (energy + 1e-30f);
 		x[q] *= keep > 0 ? keep : 0;
+	}
+}
+
+/* ---- what errors of many values are worth: spectral_weights_find.c ---- */
+
+static void KERNEL(spectral_log2s)(double *x, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		x[i] = fast_log2(x[i]);
+}
+
+static void KERNEL(spectral_worths)(const double *radiance, size_t n, const struct spectral_light *lights, size_t light_count,
+                                    double ambient, double *restrict out)
+{
+	for (size_t i = 0; i < n; i++)
+		out[i] = 0;
+	for (size_t l = 0; l < light_count; l++) {
+		const double light = lights[l].radiance, count = lights[l].count;
+		for (size_t i = 0; i < n; i++) {
+			/* A pixel x + ambient, x being this light's; the curve is a power of 1/2.4. Above white there is nothing to see. */
+			const double x = radiance[i] * light, share = x + 0.02 * light;
+			const double slope = fast_exp2(2 * (1 / 2.4 - 1) * fast_log2(x + ambient)), dimmed = slope / (x * x);
+			out[i] += count * (x > 1 ? dimmed : slope) * share * share;
+		}
 	}
 }

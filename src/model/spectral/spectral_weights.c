@@ -53,12 +53,6 @@ static void rows_fill(struct lattice_dims d, const struct spectral_weights *weig
 		}
 }
 
-static void harmonics_fill(uint32_t p, bool graded, float *factor)
-{
-	for (uint32_t m = 0; m < p; m++)
-		factor[m] = graded ? (float)sqrt(3 / (2 + cosines_exact(2 * m, p))) : 1;
-}
-
 void spectral_weights_ease(struct spectral_weights *weights, float octaves)
 {
 	const float share = fminf(fmaxf((octaves - EASE_FROM) / EASE_OCTAVES, 0), 1);
@@ -76,7 +70,8 @@ bp_status spectral_factors_create(struct lattice_dims d, const struct spectral_w
 		return error_memory(error, bytes);
 	out->harmonic = out->row + rows;
 	rows_fill(d, weights, out->row);
-	harmonics_fill(d.phi_d, weights->graded, out->harmonic);
+	for (uint32_t m = 0; m < d.phi_d; m++)
+		out->harmonic[m] = weights->graded ? (float)sqrt(3 / (2 + cosines_exact(2 * m, d.phi_d))) : 1;
 	return BP_OK;
 }
 

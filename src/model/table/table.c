@@ -12,21 +12,15 @@ static float table_unit(double unit) { return (float)(unit < TABLE_LARGEST ? uni
 
 static float largest_value(const struct expansion *e)
 {
-	size_t cells = lattice_cells(e->dims);
-	float lane[16] = {0};
-	for (int c = 0; c < 3; c++) {
-		const float *plane = e->rgb[c];
-		size_t n = 0;
-		for (; n + 16 <= cells; n += 16)
-			for (int m = 0; m < 16; m++)
-				lane[m] = plane[n + (size_t)m] > lane[m] ? plane[n + (size_t)m] : lane[m];
-		for (; n < cells; n++)
-			lane[0] = plane[n] > lane[0] ? plane[n] : lane[0];
-	}
-	float largest = 0;
-	for (int m = 0; m < 16; m++)
-		largest = lane[m] > largest ? lane[m] : largest;
-	return largest;
+	const size_t cells = lattice_cells(e->dims);
+	int32_t largest = 0; /* as integers, which have the order of floats that are not negative, this vectorises */
+
+	for (int c = 0; c < 3; c++)
+		for (size_t n = 0; n < cells; n++) {
+			const int32_t bits = (int32_t)bits_of_float(e->rgb[c][n]);
+			largest = bits > largest ? bits : largest;
+		}
+	return float_of_bits((uint32_t)largest);
 }
 
 static bp_status expanded_alloc(struct table *t, bp_error *error)
