@@ -42,8 +42,7 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 	return pending_flush(writer, BUFFER_BYTES, error);
 }
 
-/* path NULL: in memory */
-static bp_status writer_open(const char *path, struct archive_writer **out, bp_error *error)
+bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
 {
 	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES] = OUTPUT_UNFINISHED;
 	struct archive_writer *writer = calloc(1, sizeof *writer);
@@ -66,13 +65,6 @@ static bp_status writer_open(const char *path, struct archive_writer **out, bp_e
 		*out = writer;
 	return status;
 }
-
-bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
-{
-	return writer_open(path ? path : "", out, error);
-}
-
-bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error) { return writer_open(NULL, out, error); }
 
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
 {

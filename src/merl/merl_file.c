@@ -193,16 +193,11 @@ static bp_status planes_write(const char *path, enum output_rule rule, struct la
 {
 	const size_t cells = lattice_cells(dims);
 	const int32_t header[3] = {(int32_t)dims.theta_h, (int32_t)dims.theta_d, (int32_t)dims.phi_d};
-	struct output_file file;
-	bp_status status = output_file_open(path, rule, &file, error);
-	if (status != BP_OK)
-		return status;
+	struct output_file file = {.fd = -1};
 	double *values = malloc(CHUNK_VALUES * sizeof *values);
-	if (!values) {
-		status = error_memory(error, CHUNK_VALUES * sizeof *values);
-		goto out;
-	}
-	status = output_file_write(&file, header, sizeof header, error);
+	bp_status status = values ? output_file_open(path, rule, &file, error) : error_memory(error, CHUNK_VALUES * sizeof *values);
+	if (status == BP_OK)
+		status = output_file_write(&file, header, sizeof header, error);
 	for (int c = 0; c < 3; c++)
 		for (size_t start = 0; start < cells && status == BP_OK; start += CHUNK_VALUES) {
 			const size_t count = cells - start < CHUNK_VALUES ? cells - start : CHUNK_VALUES;
@@ -211,7 +206,6 @@ static bp_status planes_write(const char *path, enum output_rule rule, struct la
 		}
 	if (status == BP_OK)
 		status = output_file_commit(&file, error);
-out:
 	free(values);
 	output_file_discard(&file);
 	return status;
