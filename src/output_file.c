@@ -163,15 +163,13 @@ static void likeness_keep(struct output_file *out)
 	(void)!fchmod(out->fd, mode);                        /* a file system without modes is legal */
 }
 
-static int file_close(struct output_file *out)
+static bp_status file_sync(const struct output_file *out, bp_error *error)
 {
-	const int fd = out->fd;
-	out->fd = -1;
-	return close(fd);
+	/* Some file systems have nothing to sync, and say so. */
+	if (fsync(out->fd) == 0 || errno == EINVAL || errno == EOPNOTSUPP || errno == ENOSYS)
+		return BP_OK;
+	return refuse(out->target, "sync", error);
 }
-
-/* Some file systems have nothing to sync, and say so. */
-static bool sync_means_nothing(int reason) { return reason == EINVAL || reason == EOPNOTSUPP || reason == ENOSYS; }
 
 /* All bytes of one file to another. */
 static bp_status bytes_copy(int from, struct output_file *to, bp_error *error)
@@ -203,8 +201,8 @@ static bp_status name_give(struct output_file *out, bp_error *error)
 	bp_status status = name_find(out, take_by_creating, error);
 	if (!status)
 		status = bytes_copy(unnamed, out, error);
-	if (!status && fsync(out->fd) != 0 && !sync_means_nothing(errno))
-		status = refuse(out->target, "sync", error);
+	if (!status)
+		status = file_sync(out, error);
 	close(unnamed);
 	return status;
 }
@@ -279,18 +277,19 @@ static void folder_sync(const char *target, bp_error *error)
 
 bp_status output_file_commit_synced(struct output_file *out, bp_error *error)
 {
-	bp_status status = BP_OK;
-	if (fsync(out->fd) != 0 && !sync_means_nothing(errno))
-		status = refuse(out->target, "sync", error);
+	bp_status status = file_sync(out, error);
 	/* Placed while still locked, so that nobody takes it for a dead writer's in between. */
 	if (!status)
 		status = place(out, error);
-	if (!status)
+	if (!status) {
+		const int fd = out->fd;
+		out->fd = -1;
 		error_set(error, BP_OK, BP_NO_OFFSET, "%s", "");
-	if (!status && file_close(out) != 0)
-		error_set(error, BP_OK, BP_NO_OFFSET, "written, but closing it failed: %s", strerror(errno));
-	else if (!status)
-		folder_sync(out->target, error);
+		if (close(fd) != 0)
+			error_set(error, BP_OK, BP_NO_OFFSET, "written, but closing it failed: %s", strerror(errno));
+		else
+			folder_sync(out->target, error);
+	}
 	output_file_discard(out);
 	return status;
 }

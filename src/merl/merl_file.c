@@ -162,15 +162,14 @@ bp_status lattice_read(merl_read_fn *read, void *user, const struct merl_reading
 static bp_status descriptor_read(void *user, void *bytes, size_t capacity, size_t *got, bp_error *error)
 {
 	const int *fd = user;
-	for (;;) {
-		const ssize_t count = read(*fd, bytes, capacity);
-		if (count >= 0) {
-			*got = (size_t)count;
-			return BP_OK;
-		}
-		if (errno != EINTR)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read: %s", strerror(errno));
-	}
+	ssize_t count;
+	do
+		count = read(*fd, bytes, capacity);
+	while (count < 0 && errno == EINTR);
+	if (count < 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read: %s", strerror(errno));
+	*got = (size_t)count;
+	return BP_OK;
 }
 
 bp_status lattice_read_path(const char *path, const struct merl_reading *reading, struct lattice *out, bp_error *error)
