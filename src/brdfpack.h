@@ -385,7 +385,8 @@ typedef struct bp_loaded {
  * result it needs 2 to 17 bytes per cell while it works, at most 25 MB for a MERL lattice; more only for records of
  * megabytes, and for lattices of few or of hundreds of cells along phi_d (max_memory_bytes).
  * Errors: BP_ERROR_ARGUMENT (struct_bytes, an unknown form or colour, sampling neither 0 nor 1, max_log_rmse negative
- * or NaN), BP_ERROR_NOT_FOUND, BP_ERROR_MEMORY, and those of damaged or unreadable files.
+ * or NaN, an allocator without both functions), BP_ERROR_NOT_FOUND, BP_ERROR_LIMIT (max_memory_bytes), BP_ERROR_UNSUPPORTED (one
+ * channel of profile 2), BP_ERROR_MEMORY, and those of damaged or unreadable files.
  */
 BP_API bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_load_options *options, bp_material **out,
                                   bp_error *error);

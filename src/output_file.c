@@ -23,18 +23,20 @@ static bp_status refuse_taken(const char *path, bp_error *error)
 	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: is there already", path);
 }
 
+/* What replaces a file is nobody else's to read before it has that file's mode. */
+static mode_t mode_of(const struct output_file *out) { return out->replaces ? 0600 : 0666; }
+
 /* An unnamed file in the folder of the target, or -1 where the system has no such thing. */
-static int open_unnamed(const char *target, mode_t mode)
+static int open_unnamed(const struct output_file *out)
 {
-	char *folder = output_path_folder(target);
-	const int fd = folder ? open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, mode) : -1;
+	char *folder = output_path_folder(out->target);
+	const int fd = folder ? open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, mode_of(out)) : -1;
 	free(folder);
 	return fd;
 }
 
 /* Tries one short name after the other until `take` makes a file of it (0), or fails for another reason than that it is taken. */
-static bp_status name_find(struct output_file *out, int (*take)(struct output_file *, const char *, mode_t), mode_t mode,
-                           bp_error *error)
+static bp_status name_find(struct output_file *out, int (*take)(struct output_file *, const char *), bp_error *error)
 {
 	static atomic_uint serial; /* two writers of one process get two names */
 	char stem[OUTPUT_STEM_BYTES], name[2 * OUTPUT_STEM_BYTES];
@@ -44,7 +46,7 @@ static bp_status name_find(struct output_file *out, int (*take)(struct output_fi
 		char *path = output_path_beside(out->target, name);
 		if (!path)
 			return error_memory(error, strlen(out->target) + sizeof name);
-		if (take(out, path, mode) == 0) {
+		if (take(out, path) == 0) {
 			out->temporary = path;
 			return BP_OK;
 		}
@@ -55,10 +57,10 @@ static bp_status name_find(struct output_file *out, int (*take)(struct output_fi
 	return refuse(out->target, "create a file there", error);
 }
 
-static int take_by_creating(struct output_file *out, const char *path, mode_t mode)
+static int take_by_creating(struct output_file *out, const char *path)
 {
 	struct stat made;
-	out->fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+	out->fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode_of(out));
 	if (out->fd < 0)
 		return -1;
 	/* A folder without locks is legal; a sweep may have taken the file for a dead writer's before it was locked. */
@@ -72,22 +74,19 @@ static int take_by_creating(struct output_file *out, const char *path, mode_t mo
 }
 
 /* Names the unnamed file. */
-static int take_by_linking(struct output_file *out, const char *path, mode_t mode)
+static int take_by_linking(struct output_file *out, const char *path)
 {
 	char self[64];
-	(void)mode;
 	snprintf(self, sizeof self, "/proc/self/fd/%d", out->fd);
 	return linkat(AT_FDCWD, self, AT_FDCWD, path, AT_SYMLINK_FOLLOW);
 }
 
 static bp_status create(struct output_file *out, bp_error *error)
 {
-	/* What replaces a file is nobody else's to read before it has that file's mode. */
-	const mode_t mode = out->replaces ? 0600 : 0666;
 	if (access("/proc/self/fd", X_OK) == 0) /* else it could not be given a name later */
-		out->fd = open_unnamed(out->target, mode);
+		out->fd = open_unnamed(out);
 	if (out->fd < 0)
-		return name_find(out, take_by_creating, mode, error);
+		return name_find(out, take_by_creating, error);
 	output_path_lock(out->fd);
 	return BP_OK;
 }
@@ -164,15 +163,13 @@ static void likeness_keep(struct output_file *out)
 	(void)!fchmod(out->fd, mode);                        /* a file system without modes is legal */
 }
 
-static int file_close(struct output_file *out)
+static bp_status file_sync(const struct output_file *out, bp_error *error)
 {
-	const int fd = out->fd;
-	out->fd = -1;
-	return close(fd);
+	/* Some file systems have nothing to sync, and say so. */
+	if (fsync(out->fd) == 0 || errno == EINVAL || errno == EOPNOTSUPP || errno == ENOSYS)
+		return BP_OK;
+	return refuse(out->target, "sync", error);
 }
-
-/* Some file systems have nothing to sync, and say so. */
-static bool sync_means_nothing(int reason) { return reason == EINVAL || reason == EOPNOTSUPP || reason == ENOSYS; }
 
 /* All bytes of one file to another. */
 static bp_status bytes_copy(int from, struct output_file *to, bp_error *error)
@@ -197,15 +194,15 @@ static bp_status bytes_copy(int from, struct output_file *to, bp_error *error)
 /* Names the unnamed file; where that is not allowed, as in some containers, a copy has a name from the start. */
 static bp_status name_give(struct output_file *out, bp_error *error)
 {
-	if (!name_find(out, take_by_linking, 0, NULL))
+	if (!name_find(out, take_by_linking, NULL))
 		return BP_OK;
 	const int unnamed = out->fd;
 	out->fd = -1;
-	bp_status status = name_find(out, take_by_creating, out->replaces ? 0600 : 0666, error);
+	bp_status status = name_find(out, take_by_creating, error);
 	if (!status)
 		status = bytes_copy(unnamed, out, error);
-	if (!status && fsync(out->fd) != 0 && !sync_means_nothing(errno))
-		status = refuse(out->target, "sync", error);
+	if (!status)
+		status = file_sync(out, error);
 	close(unnamed);
 	return status;
 }
@@ -232,7 +229,7 @@ static bp_status place_over(struct output_file *out, bp_error *error)
 static bp_status place(struct output_file *out, bp_error *error)
 {
 	const bool is_new = out->rule == OUTPUT_NEW;
-	if (is_new && !out->temporary && take_by_linking(out, out->target, 0) == 0)
+	if (is_new && !out->temporary && take_by_linking(out, out->target) == 0)
 		return BP_OK;
 	if (is_new && !out->temporary && errno == EEXIST)
 		return refuse_taken(out->target, error);
@@ -280,18 +277,19 @@ static void folder_sync(const char *target, bp_error *error)
 
 bp_status output_file_commit_synced(struct output_file *out, bp_error *error)
 {
-	bp_status status = BP_OK;
-	if (fsync(out->fd) != 0 && !sync_means_nothing(errno))
-		status = refuse(out->target, "sync", error);
+	bp_status status = file_sync(out, error);
 	/* Placed while still locked, so that nobody takes it for a dead writer's in between. */
 	if (!status)
 		status = place(out, error);
-	if (!status)
+	if (!status) {
+		const int fd = out->fd;
+		out->fd = -1;
 		error_set(error, BP_OK, BP_NO_OFFSET, "%s", "");
-	if (!status && file_close(out) != 0)
-		error_set(error, BP_OK, BP_NO_OFFSET, "written, but closing it failed: %s", strerror(errno));
-	else if (!status)
-		folder_sync(out->target, error);
+		if (close(fd) != 0)
+			error_set(error, BP_OK, BP_NO_OFFSET, "written, but closing it failed: %s", strerror(errno));
+		else
+			folder_sync(out->target, error);
+	}
 	output_file_discard(out);
 	return status;
 }

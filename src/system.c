@@ -18,21 +18,20 @@ struct system_file {
 
 bp_status system_file_open(const char *path, struct system_file **out, uint64_t *bytes, bp_error *error)
 {
-	FILE *stream = fopen(path, "rb");
-	long end = -1;
-	if (!stream || fseek(stream, 0, SEEK_END) != 0 || (end = ftell(stream)) < 0 || end == LONG_MAX) {
-		bp_status status = error_set(error, stream && end == LONG_MAX ? BP_ERROR_NOT_OURS : BP_ERROR_IO, BP_NO_OFFSET,
-		                             stream && end == LONG_MAX ? "not a regular file" : "cannot open: %s", strerror(errno));
-		if (stream)
-			fclose(stream);
+	bp_status status = BP_OK;
+	struct system_file *file = malloc(sizeof *file);
+	if (!file)
+		return error_memory(error, sizeof *file);
+	file->stream = fopen(path, "rb");
+	const long end = file->stream && fseek(file->stream, 0, SEEK_END) == 0 ? ftell(file->stream) : -1;
+	if (end < 0)
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
+	else if (end == LONG_MAX)
+		status = error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "not a regular file");
+	if (status) {
+		system_file_close(file);
 		return status;
 	}
-	struct system_file *file = malloc(sizeof *file);
-	if (!file) {
-		fclose(stream);
-		return error_memory(error, sizeof *file);
-	}
-	file->stream = stream;
 	*bytes = (uint64_t)end;
 	*out = file;
 	return BP_OK;
@@ -55,7 +54,7 @@ uint64_t system_file_bytes(struct system_file *file, uint64_t otherwise)
 
 void system_file_close(struct system_file *file)
 {
-	if (file)
+	if (file && file->stream)
 		fclose(file->stream);
 	free(file);
 }

@@ -164,6 +164,30 @@ static void the_stem_is_the_name(void **state)
 	}
 }
 
+/* Members of containers may have longer names than any file system allows. */
+static void a_suffix_is_seen_however_long_the_name(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *suffix;
+		enum source_kind kind;
+		size_t bytes; /* of a measured file's suffix */
+	} cases[] = {
+		{".binary", SOURCE_KIND_MEASURED, 7},  {".BSDF", SOURCE_KIND_MEASURED, 5}, {".binary.gz", SOURCE_KIND_CONTAINER, 10},
+		{".tar.XZ", SOURCE_KIND_CONTAINER, 0}, {".tgz", SOURCE_KIND_CONTAINER, 0}, {".7z", SOURCE_KIND_FOREIGN, 0},
+		{".txt.gz", SOURCE_KIND_OTHER, 0},     {".tgz.gz", SOURCE_KIND_OTHER, 0},  {"binary", SOURCE_KIND_OTHER, 0},
+	};
+	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
+		for (int letters = 1; letters <= 1000; letters += 999) {
+			char name[1100];
+			snprintf(name, sizeof name, "%0*d%s", letters, 0, cases[n].suffix);
+			assert_int_equal(source_kind_by_name(name), cases[n].kind);
+			assert_int_equal(source_suffix_bytes(name), cases[n].bytes);
+		}
+	assert_int_equal(source_kind_by_name(".binary"), SOURCE_KIND_OTHER);
+	assert_int_equal(source_suffix_bytes(".binary"), 0);
+}
+
 static void a_folder_is_searched_to_the_bottom_in_name_order(void **state)
 {
 	(void)state;
@@ -734,6 +758,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_stem_is_the_name),
+		cmocka_unit_test(a_suffix_is_seen_however_long_the_name),
 		cmocka_unit_test(a_folder_is_searched_to_the_bottom_in_name_order),
 		cmocka_unit_test(things_that_are_no_files_are_refused_and_never_waited_for),
 		cmocka_unit_test(an_input_that_is_not_there_is_refused),

@@ -9,14 +9,12 @@
 
 enum { CHANNELS = 3 };
 
+/* 0: there is no such number. */
 static size_t number_bytes(bp_number number)
 {
-	switch (number) {
-	case BP_NUMBER_FLOAT: return sizeof(float);
-	case BP_NUMBER_DOUBLE: return sizeof(double);
-	case BP_NUMBER_HALF: return sizeof(uint16_t);
-	}
-	return 0;
+	static const size_t BYTES[] = {
+		[BP_NUMBER_FLOAT] = sizeof(float), [BP_NUMBER_DOUBLE] = sizeof(double), [BP_NUMBER_HALF] = sizeof(uint16_t)};
+	return (size_t)number < sizeof BYTES / sizeof *BYTES ? BYTES[number] : 0;
 }
 
 size_t bp_table_bytes(uint32_t theta_h, uint32_t theta_d, uint32_t phi_d, const bp_table_options *options)

@@ -80,35 +80,31 @@ bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_
 
 uint64_t bp_writer_count(const bp_writer *writer) { return writer->count; }
 
-/* Adds all; the archive writer is gone after a failure. */
-static bp_status all_add(const bp_writer *writer, struct archive_writer *to, bp_error *error)
+/* An archive writer that has all records; path NULL: in memory. */
+static bp_status writer_fill(const bp_writer *writer, const char *path, struct archive_writer **out, bp_error *error)
 {
-	for (size_t n = 0; n < writer->count; n++) {
-		const bp_status status = archive_writer_add(to, writer->list[n].record, writer->list[n].bytes, error);
-		if (status) {
-			archive_writer_discard(to);
-			return status;
-		}
-	}
-	return BP_OK;
+	struct archive_writer *to = NULL;
+	bp_status status = archive_writer_open(path, &to, error);
+	for (size_t n = 0; !status && n < writer->count; n++)
+		status = archive_writer_add(to, writer->list[n].record, writer->list[n].bytes, error);
+	if (status)
+		archive_writer_discard(to);
+	*out = to;
+	return status;
 }
 
 bp_status bp_writer_save(const bp_writer *writer, const char *path, bp_error *error)
 {
-	struct archive_writer *to = NULL;
-	bp_status status = archive_writer_open(path, &to, error);
-	if (!status)
-		status = all_add(writer, to, error);
+	struct archive_writer *to;
+	const bp_status status = writer_fill(writer, path ? path : "", &to, error);
 	return status ? status : archive_writer_commit(to, error);
 }
 
 bp_status bp_writer_save_memory(const bp_writer *writer, uint8_t **bytes, size_t *count, bp_error *error)
 {
-	struct archive_writer *to = NULL;
+	struct archive_writer *to;
 	if (!bytes || !count)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "places for the bytes and their number are needed");
-	bp_status status = archive_writer_open_memory(&to, error);
-	if (!status)
-		status = all_add(writer, to, error);
+	const bp_status status = writer_fill(writer, NULL, &to, error);
 	return status ? status : archive_writer_commit_memory(to, bytes, count, error);
 }

@@ -56,27 +56,29 @@ uint32_t index_search(const struct index_page *page, const char *name, uint64_t 
 /* The entry at `at`: fits the page, has a legal name above the one before, and plausible numbers. */
 static bp_status entry_check(const struct index_page *page, uint32_t i, size_t at, size_t *next, bp_error *error)
 {
-	size_t fixed = index_fixed_bytes(page->level), name_bytes;
-	if (at + fixed > PAGE_BYTES - 4 || at + fixed + page->bytes[at + fixed - 1] > PAGE_BYTES - 4)
+	const size_t fixed = index_fixed_bytes(page->level);
+	const uint8_t *entry = page->bytes + at;
+	if (at + fixed > PAGE_BYTES - 4 || at + fixed + entry[fixed - 1] > PAGE_BYTES - 4)
 		return error_set(error, BP_ERROR_CORRUPT, at, "index entry %u does not fit its page", i);
-	name_bytes = page->bytes[at + fixed - 1];
-	const char *fault = name_fault((const char *)page->bytes + at + fixed, name_bytes);
+	const char *name = (const char *)entry + fixed;
+	const size_t name_bytes = entry[fixed - 1];
+	const char *fault = name_fault(name, name_bytes);
 	if (fault)
 		return error_set(error, BP_ERROR_CORRUPT, at, "index entry %u has an illegal name: %s", i, fault);
 	if (i) {
 		uint32_t before_bytes;
 		const char *before = index_entry_name(page, i - 1, &before_bytes);
-		if (name_compare(before, before_bytes, (const char *)page->bytes + at + fixed, name_bytes) >= 0)
+		if (name_compare(before, before_bytes, name, name_bytes) >= 0)
 			return error_set(error, BP_ERROR_CORRUPT, at, "index entry %u is not in name order", i);
 	}
 	if (page->level == 0) {
-		uint32_t record = load_u32(page->bytes + at + 8), head = load_u32(page->bytes + at + 12);
+		uint32_t record = load_u32(entry + 8), head = load_u32(entry + 12);
 		if (head < RECORD_HEAD_BYTES_MIN || head > RECORD_HEAD_BYTES_MAX || record < head || record > RECORD_BYTES_MAX)
 			return error_set(error, BP_ERROR_CORRUPT, at + 8, "index entry %u: a record of %u bytes with a head of %u cannot be",
 			                 i, record, head);
 	} else {
-		uint64_t first = load_u64(page->bytes + at + 4);
-		if (load_u32(page->bytes + at) >= page->number)
+		uint64_t first = load_u64(entry + 4);
+		if (load_u32(entry) >= page->number)
 			return error_set(error, BP_ERROR_CORRUPT, at, "index entry %u: a child page follows its parent", i);
 		if (i == 0 ? first != page->first_ordinal : first <= load_u64(page->bytes + page->entry_at[i - 1] + 4))
 			return error_set(error, BP_ERROR_CORRUPT, at + 4, "index entry %u: ordinals are out of order", i);

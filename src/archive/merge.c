@@ -7,40 +7,32 @@
 #include "name.h"
 #include "writer.h"
 
-/* What all shards of one build have in common, from the first record seen. */
+/* The first record seen, with which those of all shards of one build have profile, version and options in common. */
 struct likeness {
-	bool known;
-	char name[RECORD_NAME_BYTES_MAX + 1];
-	const struct bp_archive *archive;
-	enum profile profile;
-	uint32_t codec_version;
-	struct fit_options options;
+	const struct bp_archive *archive; /* NULL: none has been seen */
+	struct record_head head;
 };
 
 static bp_status likeness_check(struct likeness *first, const struct bp_archive *archive, const struct record_head *head,
                                 bp_error *error)
 {
-	if (!first->known) {
-		*first = (struct likeness){.known = true,
-		                           .archive = archive,
-		                           .profile = head->profile,
-		                           .codec_version = head->codec_version,
-		                           .options = head->options};
-		strcpy(first->name, head->name);
+	if (!first->archive) {
+		*first = (struct likeness){archive, *head};
 		return BP_OK;
 	}
-	const char *what = head->profile != first->profile                             ? "profile"
-	                   : head->codec_version != first->codec_version               ? "codec version"
-	                   : head->options.budget_bytes != first->options.budget_bytes ? "budget"
-	                   : head->options.max_error != first->options.max_error       ? "bound of the error"
-	                   : head->options.effort != first->options.effort             ? "effort"
-	                   : head->options.zeros != first->options.zeros               ? "rule for zeros"
-	                                                                               : NULL;
+	const struct fit_options *now = &head->options, *then = &first->head.options;
+	const char *what = head->profile != first->head.profile               ? "profile"
+	                   : head->codec_version != first->head.codec_version ? "codec version"
+	                   : now->budget_bytes != then->budget_bytes          ? "budget"
+	                   : now->max_error != then->max_error                ? "bound of the error"
+	                   : now->effort != then->effort                      ? "effort"
+	                   : now->zeros != then->zeros                        ? "rule for zeros"
+	                                                                      : NULL;
 	return !what ? BP_OK
 	             : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
 	                         "%s: made with another %s than %s in %s: these are not shards of one build; build "
 	                         "them with the same program and options",
-	                         head->name, what, first->name, archive_path(first->archive));
+	                         head->name, what, first->head.name, archive_path(first->archive));
 }
 
 static bp_status record_copy(const struct bp_archive *archive, const struct index_entry *entry,

@@ -74,17 +74,12 @@ static void plane_copy(const bp_measured *measured, size_t cells, int c, double 
 {
 	const size_t step = measured->layout == BP_LAYOUT_INTERLEAVED ? CHANNELS : 1;
 	const size_t first = measured->layout == BP_LAYOUT_INTERLEAVED ? (size_t)c : (size_t)c * cells;
-	if (measured->number == BP_NUMBER_DOUBLE)
-		for (size_t n = 0; n < cells; n++)
-			plane[n] = ((const double *)measured->values)[first + n * step] * scale;
-	else
-		for (size_t n = 0; n < cells; n++)
-			plane[n] = (double)((const float *)measured->values)[first + n * step] * scale;
-	for (size_t n = 0; n < cells; n++)
-		plane[n] = plane[n] > VALUE_MOST && plane[n] <= DBL_MAX ? VALUE_MOST : plane[n];
-	for (size_t n = 0; measured->mask && n < cells; n++)
-		if (!measured->mask[n])
-			plane[n] = -1;
+	for (size_t n = 0; n < cells; n++) {
+		const size_t at = first + n * step;
+		const double value = scale * (measured->number == BP_NUMBER_DOUBLE ? ((const double *)measured->values)[at]
+		                                                                   : (double)((const float *)measured->values)[at]);
+		plane[n] = measured->mask && !measured->mask[n] ? -1 : value > VALUE_MOST && value <= DBL_MAX ? VALUE_MOST : value;
+	}
 }
 
 static bp_status lattice_make(const bp_measured *measured, struct lattice *lattice, bp_error *error)

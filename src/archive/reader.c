@@ -225,8 +225,6 @@ bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t 
 	uint32_t i, bytes;
 	if (!name || !index)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a name and a place for its number are needed");
-	if (archive->header.count == 0)
-		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material \"%s\"", name);
 	bp_status status = leaf_find(archive, name, 0, &leaf, error);
 	if (status)
 		return status;

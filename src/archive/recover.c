@@ -209,21 +209,15 @@ static bp_status records_save(struct scan *scan, struct archive_writer *writer, 
 	return BP_OK;
 }
 
-/* How many materials the archive's header tells of; 0 where there is none that can be believed. Cut files have one. */
-static uint64_t header_count(const struct scan *scan)
+/* Where neither a record nor the index is left, the header, if it can be believed, still tells how many there were. */
+static void nameless_tell(const struct scan *scan, struct recovery *out)
 {
 	uint8_t bytes[ARCHIVE_HEADER_BYTES] = {0};
 	struct archive_header header = {0};
-	if (scan_read(scan, 0, bytes, sizeof bytes) == sizeof bytes)
-		archive_header_read(bytes, sizeof bytes, load_u64(bytes + ARCHIVE_AT_FILE_BYTES), &header, NULL);
-	return header.count;
-}
-
-/* Where neither a record nor the index is left, the header still tells how many there were. */
-static void nameless_tell(const struct scan *scan, struct recovery *out)
-{
-	const uint64_t count = header_count(scan), named = out->saved + out->lost;
 	bp_error why;
+	if (scan_read(scan, 0, bytes, sizeof bytes) == sizeof bytes) /* of a cut file too */
+		archive_header_read(bytes, sizeof bytes, load_u64(bytes + ARCHIVE_AT_FILE_BYTES), &header, NULL);
+	const uint64_t count = header.count, named = out->saved + out->lost;
 	if (count <= named)
 		return;
 	error_set(&why, BP_ERROR_NOT_FOUND, BP_NO_OFFSET,

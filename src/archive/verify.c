@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "environment.h"
-#include "name.h"
 #include "error.h"
 #include "reader.h"
 
@@ -24,8 +23,7 @@ struct walk {
 	uint64_t next_ordinal; /* that the next leaf should begin with */
 	uint64_t next_offset;  /* where the next record should begin; 0 after damage: unknown */
 	uint64_t pages_seen;
-	uint32_t last_name_bytes;
-	char last_name[BP_NAME_BYTES_MAX + 1];
+	char last_name[BP_NAME_BYTES_MAX + 1]; /* "" before the first leaf */
 };
 
 static void problem_report(struct walk *walk, const char *material, const bp_error *error)
@@ -122,10 +120,9 @@ static void record_check(struct walk *walk, const struct index_entry *entry)
 static void leaf_check(struct walk *walk, const struct index_page *leaf)
 {
 	uint64_t page_offset = archive_header(walk->archive)->index_offset + (uint64_t)leaf->number * PAGE_BYTES;
-	struct index_entry entry = {0};
-	uint32_t bytes;
-	const char *name = index_entry_name(leaf, 0, &bytes);
-	if (walk->last_name_bytes && name_compare(walk->last_name, walk->last_name_bytes, name, bytes) >= 0)
+	struct index_entry entry;
+	index_leaf_entry(leaf, 0, &entry);
+	if (walk->last_name[0] && strcmp(walk->last_name, entry.name) >= 0) /* as name_compare: names hold no NUL */
 		problem_tell(walk, NULL, page_offset, "index page %u is not in name order", leaf->number);
 	if (leaf->first_ordinal != walk->next_ordinal)
 		problem_tell(walk, NULL, page_offset, "index page %u begins with material %llu, expected %llu", leaf->number,
@@ -135,8 +132,7 @@ static void leaf_check(struct walk *walk, const struct index_page *leaf)
 		record_check(walk, &entry);
 	}
 	walk->next_ordinal = leaf->first_ordinal + leaf->count;
-	walk->last_name_bytes = entry.name_bytes;
-	memcpy(walk->last_name, entry.name, sizeof walk->last_name);
+	strcpy(walk->last_name, entry.name);
 }
 
 static void page_walk(struct walk *walk, const struct page_expect *expect, uint64_t end_ordinal)

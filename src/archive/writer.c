@@ -42,8 +42,7 @@ static bp_status writer_append(struct archive_writer *writer, const uint8_t *byt
 	return pending_flush(writer, BUFFER_BYTES, error);
 }
 
-/* path NULL: in memory */
-static bp_status writer_open(const char *path, struct archive_writer **out, bp_error *error)
+bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
 {
 	static const uint8_t header_to_come[ARCHIVE_HEADER_BYTES] = OUTPUT_UNFINISHED;
 	struct archive_writer *writer = calloc(1, sizeof *writer);
@@ -67,13 +66,6 @@ static bp_status writer_open(const char *path, struct archive_writer **out, bp_e
 	return status;
 }
 
-bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
-{
-	return writer_open(path ? path : "", out, error);
-}
-
-bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error) { return writer_open(NULL, out, error); }
-
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
 {
 	struct record_head head;
@@ -96,10 +88,18 @@ static bp_status page_append(void *user, const uint8_t page[PAGE_BYTES], bp_erro
 	return writer_append(user, page, PAGE_BYTES, error);
 }
 
-static bp_status header_put(struct archive_writer *writer, const struct archive_header *header, bp_error *error)
+/* Index and header: the archive is whole then, where it is. */
+static bp_status writer_end(struct archive_writer *writer, bp_error *error)
 {
+	struct archive_header header = {.count = writer->index.count, .index_offset = writer->file_bytes};
 	uint8_t bytes[ARCHIVE_HEADER_BYTES];
-	archive_header_write(header, bytes);
+	bp_status status = index_write(&writer->index, page_append, writer, &header.page_count, &header.depth, error);
+	if (!status)
+		status = pending_flush(writer, 0, error);
+	if (status)
+		return status;
+	header.file_bytes = writer->file_bytes;
+	archive_header_write(&header, bytes);
 	if (writer->in_memory) {
 		memcpy(writer->pending.bytes, bytes, sizeof bytes);
 		return BP_OK;
@@ -107,17 +107,6 @@ static bp_status header_put(struct archive_writer *writer, const struct archive_
 	if (lseek(writer->file.fd, 0, SEEK_SET) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot seek: %s", writer->file.target, strerror(errno));
 	return output_file_write(&writer->file, bytes, sizeof bytes, error);
-}
-
-/* Index and header: the archive is whole then, where it is. */
-static bp_status writer_end(struct archive_writer *writer, bp_error *error)
-{
-	struct archive_header header = {.count = writer->index.count, .index_offset = writer->file_bytes};
-	bp_status status = index_write(&writer->index, page_append, writer, &header.page_count, &header.depth, error);
-	if (!status)
-		status = pending_flush(writer, 0, error);
-	header.file_bytes = writer->file_bytes;
-	return status ? status : header_put(writer, &header, error);
 }
 
 bp_status archive_writer_commit(struct archive_writer *writer, bp_error *error)

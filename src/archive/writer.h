@@ -11,10 +11,11 @@
 
 struct archive_writer;
 
-/* A symbolic link at `path` is followed; anything there but a regular file is refused. */
+/*
+ * A symbolic link at `path` is followed; anything there but a regular file is refused. NULL: into memory, nothing of a file
+ * system is touched.
+ */
 bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error);
-/* The same into memory: nothing of a file system is touched. */
-bp_status archive_writer_open_memory(struct archive_writer **out, bp_error *error);
 
 /* Appends one whole record, whose head is checked. Names must come in strictly ascending byte order. */
 bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error);

@@ -23,40 +23,26 @@ struct tally {
 	size_t cut_other;             /* partly above the horizon, centre below the limit, and holding something else */
 };
 
-/* The table as the search for a pattern sees it: bits of CELL_* for each cell. */
-enum {
-	CELL_OTHER = 1,
-	CELL_SEEN = 2,
-	CELL_UNDER = 4
-}; /* holds something else; lies partly above; its centre is below the limit */
-
-static void bit_set(uint8_t *marks, const uint8_t *where, size_t cells, int bit)
-{
-	for (size_t n = 0; n < cells; n++)
-		marks[n] = (uint8_t)(marks[n] | (where[n] ? bit : 0));
-}
-
-static struct tally tally_take(const struct lattice *lattice, const uint8_t *marks)
+static struct tally tally_take(const struct lattice *lattice, const double value[3], const uint8_t *seen, const uint8_t *under)
 {
 	struct tally tally = {0};
 	for (size_t n = 0; n < lattice_cells(lattice->dims); n++) {
-		const bool seen = marks[n] & CELL_SEEN, under = marks[n] & CELL_UNDER, other = marks[n] & CELL_OTHER;
-		const bool same = lattice->valid[n] && !other;
-		tally.seen += seen;
-		tally.seen_same += seen && same;
-		tally.deep += !seen && under;
-		tally.shallow += !seen && !under;
-		tally.shallow_same += !seen && !under && same;
-		tally.cut_other += seen && under && other;
+		const bool holds = cell_holds(lattice, n, value), same = lattice->valid[n] && holds, other = lattice->valid[n] && !holds;
+		tally.seen += seen[n];
+		tally.seen_same += seen[n] && same;
+		tally.deep += !seen[n] && under[n];
+		tally.shallow += !seen[n] && !under[n];
+		tally.shallow_same += !seen[n] && !under[n] && same;
+		tally.cut_other += seen[n] && under[n] && other;
 	}
 	return tally;
 }
 
 /*
  * The pattern of holes.h: its value, and marks[cells], 1 for cells that are holes where they hold it; all 0: nothing found.
- * where[cells]: room.
+ * under[cells]: room.
  */
-static void pattern_find(const struct lattice *lattice, uint8_t *marks, uint8_t *where, double value[3])
+static void pattern_find(const struct lattice *lattice, uint8_t *marks, uint8_t *under, double value[3])
 {
 	const struct lattice_dims dims = lattice->dims;
 	const size_t cells = lattice_cells(dims), deepest = lattice_index(dims, dims.theta_h - 1, dims.theta_d - 1, 0);
@@ -67,24 +53,21 @@ static void pattern_find(const struct lattice *lattice, uint8_t *marks, uint8_t 
 		return;
 	for (int c = 0; c < 3; c++)
 		value[c] = lattice->rgb[c][deepest];
-	for (size_t n = 0; n < cells; n++) {
-		marks[n] = lattice->valid[n] && !cell_holds(lattice, n, value) ? CELL_OTHER : 0;
-		others += marks[n];
-	}
+	for (size_t n = 0; n < cells; n++)
+		others += marks[n] = lattice->valid[n] && !cell_holds(lattice, n, value);
 	double limit = lattice_lowest_below(dims, marks);
 	if (limit > LATTICE_MERL_HORIZON && limit < LATTICE_MERL_HORIZON + DARK_MARGIN)
 		limit = LATTICE_MERL_HORIZON;
-	lattice_seen(dims, where);
-	bit_set(marks, where, cells, CELL_SEEN);
-	lattice_centre_below(dims, limit, where);
-	bit_set(marks, where, cells, CELL_UNDER);
-	const struct tally tally = tally_take(lattice, marks);
+	uint8_t *const seen = marks;
+	lattice_seen(dims, seen);
+	lattice_centre_below(dims, limit, under);
+	const struct tally tally = tally_take(lattice, value, seen, under);
 	const bool is_edge = tally.deep > 0 && tally.deep >= tally.shallow;
 	const bool is_sharp = limit >= LATTICE_DEEPEST_HORIZON || 2 * tally.shallow_same <= tally.shallow;
-	const bool is_rare = memcmp(value, BLACK, sizeof BLACK) == 0 || 2 * tally.seen_same <= tally.seen;
+	const bool is_rare = cell_holds(lattice, deepest, BLACK) || 2 * tally.seen_same <= tally.seen;
 	const bool found = others && is_edge && is_sharp && is_rare;
 	for (size_t n = 0; n < cells; n++)
-		marks[n] = found && (marks[n] & CELL_UNDER) && (!(marks[n] & CELL_SEEN) || !tally.cut_other);
+		marks[n] = found && under[n] && (!seen[n] || !tally.cut_other);
 }
 
 /* Makes holes of cells that hold the value; where[n]: candidates, NULL: all. */

@@ -157,3 +157,14 @@ void lattice_validate(struct lattice *lattice)
 		lattice->most = fmax(lattice->most, lattice_scan(lattice->rgb[c], cells, 1, lattice->valid));
 	lattice_scan_finish(lattice);
 }
+
+double lattice_largest(const struct lattice *lattice)
+{
+	const size_t cells = lattice_cells(lattice->dims);
+	double largest = 0;
+	for (int c = 0; c < 3; c++)
+		for (size_t n = 0; n < cells; n++)
+			if (lattice->valid[n] && lattice->rgb[c][n] > largest)
+				largest = lattice->rgb[c][n];
+	return largest;
+}

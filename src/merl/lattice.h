@@ -82,8 +82,11 @@ void lattice_free(struct lattice *lattice); /* a zeroed struct is allowed, as in
  */
 void lattice_validate(struct lattice *lattice);
 
+/* The largest valid value of all channels, in 1/sr; 0 where there is none. */
+double lattice_largest(const struct lattice *lattice);
+
 /*
- * The same in steps, for a reader that works on data while it is in the cache. state = lattice.valid,
+ * lattice_validate in steps, for a reader that works on data while it is in the cache. state = lattice.valid,
  * zeroed. lattice_scan: notes in state[count] what is wrong with the values, scales them, and
  * stores 0 for those that cannot be used; once per plane. Returns the largest of what it stored. lattice_scan_finish: state
  * becomes valid; `most` is the reader's to set.

@@ -162,15 +162,14 @@ bp_status lattice_read(merl_read_fn *read, void *user, const struct merl_reading
 static bp_status descriptor_read(void *user, void *bytes, size_t capacity, size_t *got, bp_error *error)
 {
 	const int *fd = user;
-	for (;;) {
-		const ssize_t count = read(*fd, bytes, capacity);
-		if (count >= 0) {
-			*got = (size_t)count;
-			return BP_OK;
-		}
-		if (errno != EINTR)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read: %s", strerror(errno));
-	}
+	ssize_t count;
+	do
+		count = read(*fd, bytes, capacity);
+	while (count < 0 && errno == EINTR);
+	if (count < 0)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read: %s", strerror(errno));
+	*got = (size_t)count;
+	return BP_OK;
 }
 
 bp_status lattice_read_path(const char *path, const struct merl_reading *reading, struct lattice *out, bp_error *error)
@@ -193,16 +192,11 @@ static bp_status planes_write(const char *path, enum output_rule rule, struct la
 {
 	const size_t cells = lattice_cells(dims);
 	const int32_t header[3] = {(int32_t)dims.theta_h, (int32_t)dims.theta_d, (int32_t)dims.phi_d};
-	struct output_file file;
-	bp_status status = output_file_open(path, rule, &file, error);
-	if (status != BP_OK)
-		return status;
+	struct output_file file = {.fd = -1};
 	double *values = malloc(CHUNK_VALUES * sizeof *values);
-	if (!values) {
-		status = error_memory(error, CHUNK_VALUES * sizeof *values);
-		goto out;
-	}
-	status = output_file_write(&file, header, sizeof header, error);
+	bp_status status = values ? output_file_open(path, rule, &file, error) : error_memory(error, CHUNK_VALUES * sizeof *values);
+	if (status == BP_OK)
+		status = output_file_write(&file, header, sizeof header, error);
 	for (int c = 0; c < 3; c++)
 		for (size_t start = 0; start < cells && status == BP_OK; start += CHUNK_VALUES) {
 			const size_t count = cells - start < CHUNK_VALUES ? cells - start : CHUNK_VALUES;
@@ -211,7 +205,6 @@ static bp_status planes_write(const char *path, enum output_rule rule, struct la
 		}
 	if (status == BP_OK)
 		status = output_file_commit(&file, error);
-out:
 	free(values);
 	output_file_discard(&file);
 	return status;

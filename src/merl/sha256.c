@@ -18,36 +18,16 @@ void sha256_finish(struct sha256 *sha, uint8_t digest[32]) { sha256_digest(&sha-
 
 void sha256_to_hex(const uint8_t digest[32], char hex[SHA256_HEX_CHARACTERS + 1])
 {
-	static const char digits[] = "0123456789abcdef";
-	for (int n = 0; n < 32; n++) {
-		hex[2 * n] = digits[digest[n] >> 4];
-		hex[2 * n + 1] = digits[digest[n] & 15];
-	}
-	hex[SHA256_HEX_CHARACTERS] = '\0';
-}
-
-/* 0..15, or -1; never reads the locale */
-static int digit_value(char digit)
-{
-	if (digit >= '0' && digit <= '9')
-		return digit - '0';
-	if (digit >= 'a' && digit <= 'f')
-		return digit - 'a' + 10;
-	if (digit >= 'A' && digit <= 'F')
-		return digit - 'A' + 10;
-	return -1;
+	for (int n = 0; n < 32; n++)
+		snprintf(hex + 2 * n, 3, "%02x", digest[n]);
 }
 
 bool sha256_from_hex(const char *hex, uint8_t digest[32])
 {
-	if (strlen(hex) != SHA256_HEX_CHARACTERS)
+	if (strlen(hex) != SHA256_HEX_CHARACTERS || strspn(hex, "0123456789abcdefABCDEF") != SHA256_HEX_CHARACTERS)
 		return false;
-	for (int n = 0; n < 32; n++) {
-		const int high = digit_value(hex[2 * n]), low = digit_value(hex[2 * n + 1]);
-		if (high < 0 || low < 0)
-			return false;
-		digest[n] = (uint8_t)(high << 4 | low);
-	}
+	for (int n = 0; n < 32; n++)
+		sscanf(hex + 2 * n, "%2hhx", &digest[n]);
 	return true;
 }
 

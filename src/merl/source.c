@@ -15,12 +15,14 @@
 
 enum { DEPTH_MAX = 1000 };
 
-static void notice(struct source_list *list, enum source_notice kind, const char *path, const char *reason)
+/* BP_OK: what is told ends nothing. */
+static bp_status notice(struct source_list *list, enum source_notice kind, const char *path, const char *reason)
 {
 	list->skipped_count += kind == SOURCE_SKIPPED;
 	list->damaged_count += kind == SOURCE_DAMAGED;
 	if (list->options.notice)
 		list->options.notice(list->options.user, kind, path, reason);
+	return BP_OK;
 }
 
 /* Tells of a material that cannot be packed. */
@@ -103,24 +105,18 @@ static bp_status container_add(struct source_list *list, const char *path, bool 
 	bp_status status = container_open(path, CONTAINER_INDEXED, list->options.charset, &container, &reason);
 	if (status == BP_ERROR_UNSUPPORTED)
 		return stream_add(list, path, named, error);
-	if (status != BP_OK) {
-		notice(list, SOURCE_DAMAGED, path, reason.message);
-		return BP_OK;
-	}
-	while (more) {
+	if (status != BP_OK)
+		return notice(list, SOURCE_DAMAGED, path, reason.message);
+	while (!status && more) {
 		status = container_next(container, &member, &more, &reason);
 		if (status == BP_ERROR_MEMORY) {
-			status = error_memory(error, 0);
-			break;
-		}
-		if (status != BP_OK) {
-			notice(list, SOURCE_DAMAGED, path, reason.message);
-			status = BP_OK;
+			error_memory(error, 0);
+		} else if (status != BP_OK) {
+			status = notice(list, SOURCE_DAMAGED, path, reason.message);
 			more = true;
-			continue;
+		} else if (more) {
+			status = item_add(list, path, &member, 0, error);
 		}
-		if (more && (status = item_add(list, path, &member, 0, error)) != BP_OK)
-			break;
 	}
 	const struct container_sums *sums = container_sums(container);
 	if (sums->remark && status == BP_OK)
@@ -166,14 +162,10 @@ static bp_status folder_add(struct source_list *list, const char *path, const st
 	int count = 0;
 	bp_status status = BP_OK;
 	for (size_t n = 0; n < visited->count; n++)
-		if (visited->folders[n].device == about->st_dev && visited->folders[n].inode == about->st_ino) {
-			notice(list, SOURCE_SKIPPED, path, "a link to a folder that has been searched already");
-			return BP_OK;
-		}
-	if (depth > DEPTH_MAX) {
-		notice(list, SOURCE_DAMAGED, path, "more than 1000 folders deep: what is below is not searched");
-		return BP_OK;
-	}
+		if (visited->folders[n].device == about->st_dev && visited->folders[n].inode == about->st_ino)
+			return notice(list, SOURCE_SKIPPED, path, "a link to a folder that has been searched already");
+	if (depth > DEPTH_MAX)
+		return notice(list, SOURCE_DAMAGED, path, "more than 1000 folders deep: what is below is not searched");
 	struct folder *folders = memory_grown(visited->folders, visited->count, sizeof *folders);
 	if (!folders)
 		return error_memory(error, 2 * visited->count * sizeof *folders);
@@ -183,8 +175,7 @@ static bp_status folder_add(struct source_list *list, const char *path, const st
 	if (count < 0) {
 		char reason[128];
 		snprintf(reason, sizeof reason, "unreadable folder: %s", strerror(errno));
-		notice(list, SOURCE_DAMAGED, path, reason);
-		return BP_OK;
+		return notice(list, SOURCE_DAMAGED, path, reason);
 	}
 	for (int n = 0; n < count; n++) {
 		char *inner = NULL;
@@ -211,10 +202,8 @@ static bp_status thing_add(struct source_list *list, const char *path, bool name
 		list->ignored_count++;
 		return BP_OK;
 	}
-	if (kind != SOURCE_KIND_MEASURED) {
-		notice(list, SOURCE_DAMAGED, path, reason);
-		return BP_OK;
-	}
+	if (kind != SOURCE_KIND_MEASURED)
+		return notice(list, SOURCE_DAMAGED, path, reason);
 	source_stem(path, name);
 	if (source_is_wanted(list, name))
 		return refuse(list, name, path, NULL, reason, error);
@@ -247,9 +236,8 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 	case SOURCE_KIND_MEASURED: return item_add(list, path, NULL, (uint64_t)about.st_size, error);
 	case SOURCE_KIND_CONTAINER: return container_add(list, path, named, error);
 	case SOURCE_KIND_FOREIGN:
-		notice(list, SOURCE_DAMAGED, path,
-		       "a container of a kind that is not read, or a part of one; unpack it, or pack it as zip or tar");
-		return BP_OK;
+		return notice(list, SOURCE_DAMAGED, path,
+		              "a container of a kind that is not read, or a part of one; unpack it, or pack it as zip or tar");
 	case SOURCE_KIND_OTHER:
 		if ((uint64_t)about.st_size == merl_file_bytes(LATTICE_MERL))
 			notice(list, SOURCE_SKIPPED, path,

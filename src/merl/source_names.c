@@ -9,7 +9,7 @@
 #include "name.h"
 #include "shown.h"
 
-/* Who has a name: where it was first seen, as a person would write it. */
+/* Who has a name: where it was first seen. */
 struct claim {
 	char *name, *where;
 };
@@ -39,34 +39,26 @@ bp_status source_name_make(const char *path, const char *member, const char *fau
 {
 	source_stem(member ? member : path, name);
 	const char *illegal = name_fault(name, strlen(name));
-	if (illegal && !name_text(name) && member)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                 "its stem cannot name a material: %s; tell the names' character set with --charset (CP437, SHIFT_JIS, "
-		                 "ISO-8859-1 ...)",
-		                 illegal);
 	if (illegal)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "its stem cannot name a material: %s; rename the file",
-		                 illegal);
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "its stem cannot name a material: %s; %s", illegal,
+		                 member && !name_text(name)
+		                     ? "tell the names' character set with --charset (CP437, SHIFT_JIS, ISO-8859-1 ...)"
+		                     : "rename the file");
 	return fault ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", fault) : BP_OK;
 }
 
 bp_status source_name_claim(void **names, const char *name, const char *path, const char *member, bp_error *error)
 {
-	char *where = NULL, *shown = source_text_shown(member ? member : "");
 	struct claim *claim = calloc(1, sizeof *claim);
-	if (shown && asprintf(&where, "%s%s%s", path, member ? ": member " : "", shown) < 0)
-		where = NULL;
-	free(shown);
-	if (!claim || !where || !(claim->name = strdup(name))) {
-		free(where);
-		free(claim);
-		return error_memory(error, sizeof *claim);
-	}
-	claim->where = where;
-	struct claim **holder = tsearch(claim, names, claim_compare);
+	if (claim)
+		claim->name = strdup(name);
+	if (claim && asprintf(&claim->where, "%s%s%s", path, member ? ": member " : "", member ? member : "") < 0)
+		claim->where = NULL;
+	struct claim **holder = claim && claim->name && claim->where ? tsearch(claim, names, claim_compare) : NULL;
 	if (holder && *holder == claim)
 		return BP_OK;
-	claim_free(claim);
+	if (claim)
+		claim_free(claim);
 	if (!holder)
 		return error_memory(error, sizeof *claim);
 	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,

@@ -1,5 +1,6 @@
 #include "comparison.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
@@ -29,7 +30,7 @@ void comparison_plans_free(struct comparison_plans *plans)
 {
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		sphere_plan_free(plans->plans[l]);
-	energy_plan_free(plans->energy);
+	free(plans->energy);
 	sphere_image_free(&plans->reference);
 	sphere_image_free(&plans->estimate);
 	*plans = (struct comparison_plans){.lightings = plans->lightings, .size = plans->size};

@@ -19,12 +19,8 @@ bp_status density_source_measured(const struct lattice *lattice, struct density_
 	const bp_status status = source_alloc(lattice->dims, lattice->valid, out, error);
 	if (status)
 		return status;
-	double largest = 0;
-	for (int c = 0; c < 3; c++)
-		for (size_t n = 0; n < cells; n++)
-			largest = lattice->valid[n] ? fmax(largest, lattice->rgb[c][n]) : largest;
 	/* copulas do not depend on the scale: any magnitude fits a float */
-	double scale = largest > 0 ? 1 / (3 * largest) : 1;
+	const double largest = lattice_largest(lattice), scale = largest > 0 ? 1 / (3 * largest) : 1;
 	for (size_t n = 0; n < cells; n++)
 		if (lattice->valid[n])
 			out->mean[n] = (float)(lattice->rgb[0][n] * scale + lattice->rgb[1][n] * scale + lattice->rgb[2][n] * scale);

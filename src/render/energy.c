@@ -8,8 +8,8 @@
 enum { THETA_STEPS = 180, PHI_STEPS = 90, PLACES_MAX = THETA_STEPS * PHI_STEPS };
 
 struct energy_plan {
-	struct place *places;
 	size_t first[ENERGY_DIRECTIONS + 1]; /* places of direction n: first[n] .. first[n + 1] - 1 */
+	struct place places[ENERGY_DIRECTIONS * PLACES_MAX];
 };
 
 /*
@@ -38,16 +38,14 @@ static size_t plan_direction(const struct angle_tables *angles, struct lattice_d
 
 bp_status energy_plan_make(struct lattice_dims dims, struct energy_plan **out, bp_error *error)
 {
-	struct energy_plan *plan = calloc(1, sizeof *plan);
+	struct energy_plan *plan = malloc(sizeof *plan);
 	struct angle_tables *angles = angle_tables_make();
-	size_t bytes = sizeof(struct place) * PLACES_MAX * ENERGY_DIRECTIONS;
-	if (plan)
-		plan->places = malloc(bytes);
-	if (!plan || !angles || !plan->places) {
+	if (!plan || !angles) {
 		free(angles);
-		energy_plan_free(plan);
-		return error_memory(error, bytes);
+		free(plan);
+		return error_memory(error, sizeof *plan);
 	}
+	plan->first[0] = 0;
 	for (int n = 0; n < ENERGY_DIRECTIONS; n++) {
 		double theta_o = n * ENERGY_STEP_DEGREES * M_PI / 180;
 		plan->first[n + 1] = plan->first[n] + plan_direction(angles, dims, theta_o, plan->places + plan->first[n]);
@@ -55,14 +53,6 @@ bp_status energy_plan_make(struct lattice_dims dims, struct energy_plan **out, b
 	free(angles);
 	*out = plan;
 	return BP_OK;
-}
-
-void energy_plan_free(struct energy_plan *plan)
-{
-	if (plan) {
-		free(plan->places);
-		free(plan);
-	}
 }
 
 void energy_measure(const struct energy_plan *plan, const struct lookup_table *table, struct energy *out)

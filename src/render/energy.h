@@ -27,8 +27,7 @@ struct energy {
 	int channel;    /* of the largest */
 };
 struct energy_plan;
-bp_status energy_plan_make(struct lattice_dims dims, struct energy_plan **out, bp_error *error);
-void energy_plan_free(struct energy_plan *plan); /* NULL is allowed */
+bp_status energy_plan_make(struct lattice_dims dims, struct energy_plan **out, bp_error *error); /* freed with free() */
 void energy_measure(const struct energy_plan *plan, const struct lookup_table *table, struct energy *out);
 
 #endif

@@ -49,8 +49,8 @@ static struct colour density_colour(double density)
 	return t < 0 ? (struct colour){low, middle, high} : (struct colour){high, middle, low};
 }
 
-/* Decades that hold all positive values of both lines; false when there are none. */
-static bool decades_find(const struct figure *figure, int *low, int *high)
+/* Decades that hold all positive values of both lines; as they were when there are none. */
+static void decades_find(const struct figure *figure, int *low, int *high)
 {
 	double least = INFINITY, most = 0;
 	const double *lines[2] = {figure->error_before, figure->error_after};
@@ -61,12 +61,11 @@ static bool decades_find(const struct figure *figure, int *low, int *high)
 				most = fmax(most, lines[l][i]);
 			}
 	if (!(most > 0))
-		return false;
+		return;
 	*low = (int)floor(log10(least));
 	*high = (int)ceil(log10(most));
 	*low = *low < *high - 8 ? *high - 8 : *low; /* exact zeros and rounding noise need no room */
 	*high = *high > *low ? *high : *low + 1;
-	return true;
 }
 
 /* Absolute error over theta_h; the horizontal axis has the lattice's spacing, dense near the highlight. */
@@ -176,9 +175,8 @@ static void scale_draw(struct canvas *canvas, double x, double y)
 {
 	enum { STEPS = 90, WIDTH = 18 };
 	char text[16];
-	for (int s = 0; s < STEPS; s++) {
+	for (int s = 0; s < STEPS; s++)
 		canvas_rectangle(canvas, x, y + 2 * s, WIDTH, 2, density_colour(exp2(SPAN - 2 * SPAN * (s + 0.5) / STEPS)));
-	}
 	frame_draw(canvas, x, y, WIDTH, 2 * STEPS);
 	for (int t = -2; t <= 2; t++) {
 		double at = y + STEPS - t * STEPS / SPAN;

@@ -22,8 +22,10 @@ bp_status image_exposure(const struct sphere_image *reference, double *exposure,
 	return BP_OK;
 }
 
+double image_clamped(double linear) { return linear < 0 ? 0 : linear > 1 ? 1 : linear; }
+
 double image_srgb(double linear)
 {
-	double x = linear < 0 ? 0 : linear > 1 ? 1 : linear;
+	double x = image_clamped(linear);
 	return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
 }

@@ -35,8 +35,6 @@ double itp_difference(const double a[3], const double b[3])
 	return 720 * sqrt(squares);
 }
 
-static double clamped(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
-
 bp_status itp_mean(const struct sphere_image *reference, const struct sphere_image *estimate, double *out, bp_error *error)
 {
 	double exposure, sum = 0;
@@ -48,11 +46,8 @@ bp_status itp_mean(const struct sphere_image *reference, const struct sphere_ima
 		if (!reference->covered[n])
 			continue;
 		double a[3], b[3], itp_a[3], itp_b[3];
-		for (int c = 0; c < 3; c++) {
-			const double e = (double)estimate->rgb[3 * n + (size_t)c];
-			a[c] = clamped((double)reference->rgb[3 * n + (size_t)c] * exposure);
-			b[c] = isfinite(e) ? clamped(e * exposure) : 1 - a[c];
-		}
+		for (size_t c = 0; c < 3; c++)
+			image_pair(reference, estimate, 3 * n + c, exposure, image_clamped, &a[c], &b[c]);
 		itp_of(a, itp_a);
 		itp_of(b, itp_b);
 		sum += itp_difference(itp_a, itp_b);

@@ -28,18 +28,6 @@ static void table_wrap(struct lookup_table *table)
 	memcpy(end, end - slice, slice * sizeof(float));
 }
 
-/* See lookup_table_measured. */
-static double table_unit(const struct lattice *lattice)
-{
-	double largest = 0;
-	size_t cells = lattice_cells(lattice->dims);
-	for (int c = 0; c < 3; c++)
-		for (size_t n = 0; n < cells; n++)
-			if (lattice->valid[n] && lattice->rgb[c][n] > largest)
-				largest = lattice->rgb[c][n];
-	return largest > 0 && (largest < 1e-20 || largest > 1e20) ? largest : 1;
-}
-
 /* Of planes of doubles, which are divided by the unit, or of floats, which are multiplied by `scale`. */
 static bp_status table_make(struct lattice_dims dims, double *const measured[3], float *const decoded[3], double scale,
                             const uint8_t *valid, double unit, struct lookup_table *out, bp_error *error)
@@ -66,7 +54,9 @@ static bp_status table_make(struct lattice_dims dims, double *const measured[3],
 
 bp_status lookup_table_measured(const struct lattice *lattice, struct lookup_table *out, bp_error *error)
 {
-	return table_make(lattice->dims, lattice->rgb, NULL, 1, lattice->valid, table_unit(lattice), out, error);
+	const double largest = lattice_largest(lattice);
+	const double unit = largest > 0 && (largest < 1e-20 || largest > 1e20) ? largest : 1;
+	return table_make(lattice->dims, lattice->rgb, NULL, 1, lattice->valid, unit, out, error);
 }
 
 bp_status lookup_table_decoded(const struct expansion *expansion, const uint8_t *valid, double unit, struct lookup_table *out,

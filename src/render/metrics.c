@@ -13,10 +13,9 @@ bp_status metrics_psnr(const struct sphere_image *reference, const struct sphere
 	for (size_t n = 0; n < pixels; n++) {
 		if (!reference->covered[n])
 			continue;
-		for (int c = 0; c < 3; c++) {
-			double e = estimate->rgb[3 * n + (size_t)c];
-			double a = image_srgb(reference->rgb[3 * n + (size_t)c] * exposure),
-				   b = isfinite(e) ? image_srgb(e * exposure) : 1 - a;
+		for (size_t c = 0; c < 3; c++) {
+			double a, b;
+			image_pair(reference, estimate, 3 * n + c, exposure, image_srgb, &a, &b);
 			double d = round(255 * a) - round(255 * b);
 			sum += (a - b) * (a - b);
 			sum_eight += d * d;

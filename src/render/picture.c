@@ -55,9 +55,8 @@ bp_status picture_compare(const struct sphere_image *reference, const struct sph
 	picture_place(&picture, size, estimate, exposure);
 	for (uint32_t y = 0; y < size; y++)
 		for (uint32_t x = 0; x < 3 * size; x++) {
-			size_t n = x + (size_t)3 * size * y;
-			double a = image_srgb(reference->rgb[n] * exposure), b = estimate->rgb[n];
-			b = isfinite(b) ? image_srgb(b * exposure) : 1 - a;
+			double a, b;
+			image_pair(reference, estimate, x + (size_t)3 * size * y, exposure, image_srgb, &a, &b);
 			picture.rgb[(size_t)3 * 3 * size * y + 6 * size + x] = to_byte(10 * fabs(a - b));
 		}
 	*out = picture;

@@ -96,13 +96,10 @@ class Drawing {
 		gl.uniform1fv(at["is_point[0]"], Float32Array.from({ length: LIGHTS_A_PASS }, (_, n) => some[n] ? some[n].point : 0));
 		for (const slot of ["a", "b"]) {
 			const material = this.materials[slot], sums = this.sums[slot];
-			gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, sums[1], 0);
-			if (this.done === 0) { // nothing before the first lights
-				gl.bindTexture(gl.TEXTURE_2D, null);
-				gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, sums[0], 0);
-				gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
-				gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, sums[1], 0);
-				gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+			if (this.done === 0) gl.bindTexture(gl.TEXTURE_2D, null);
+			for (const sum of sums) { // the last one is drawn into
+				gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, sum, 0);
+				if (this.done === 0) gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]); // nothing before the first lights
 			}
 			if (!material) continue;
 			const m = material.numbers;

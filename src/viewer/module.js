@@ -1,20 +1,6 @@
 "use strict";
 // The reader as WebAssembly, and the places that archives come from. Works in a browser and in Node.
 
-// A place with all its bytes at hand.
-class MemorySource {
-	constructor(name, bytes) {
-		this.name = name;
-		this.size = bytes.length;
-		this.bytes = bytes;
-		this.fetched = 0;
-	}
-	read(offset, to) {
-		to.set(this.bytes.subarray(offset, offset + to.length));
-		return true;
-	}
-}
-
 // A place that gives ranges of bytes when it is asked: `get(from, end)` is a promise of them. What came is kept.
 class RangeSource {
 	constructor(name, size, get) {
@@ -43,6 +29,14 @@ class RangeSource {
 		if (bytes.length !== end - from) throw new Error(`${this.name}: ${bytes.length} bytes came for ${end - from}`);
 		this.fetched += bytes.length;
 		this.pieces.unshift({ from, bytes });
+	}
+}
+
+// A place with all its bytes at hand.
+class MemorySource extends RangeSource {
+	constructor(name, bytes) {
+		super(name, bytes.length);
+		this.pieces.push({ from: 0, bytes });
 	}
 }
 
@@ -171,7 +165,7 @@ class Archive {
 	// info: of this material; layers 0: all of them
 	async load(index, info, layers, preview) {
 		const { reader, source, handle } = this, end = info.layers[(layers || info.layers.length) - 1].bytes;
-		if (source instanceof RangeSource) await source.load(info.offset, info.offset + end);
+		await source.load(info.offset, info.offset + end);
 		return new Material(reader, await reader.call(source, (m) => m === 0, () => reader.calls.viewer_material_load(handle, index, layers, preview ? 1 : 0)));
 	}
 	async verify() {
@@ -181,12 +175,15 @@ class Archive {
 	// The decoded table of some layers: {dims, values}, values in the order R, G, B
 	async table(index, layers) {
 		const { reader, handle } = this, dims = reader.calls.viewer_alloc(12);
-		const at = await reader.call(this.source, (a) => a === 0, () => reader.calls.viewer_table(handle, index, layers, dims));
-		const extents = Array.from(new Uint32Array(reader.calls.memory.buffer, dims, 3));
-		const values = new Float64Array(reader.calls.memory.buffer, at, 3 * extents[0] * extents[1] * extents[2]).slice();
-		reader.calls.viewer_free(at);
-		reader.calls.viewer_free(dims);
-		return { dims: extents, values };
+		try {
+			const at = await reader.call(this.source, (a) => a === 0, () => reader.calls.viewer_table(handle, index, layers, dims));
+			const extents = Array.from(new Uint32Array(reader.calls.memory.buffer, dims, 3));
+			const values = new Float64Array(reader.calls.memory.buffer, at, 3 * extents[0] * extents[1] * extents[2]).slice();
+			reader.calls.viewer_free(at);
+			return { dims: extents, values };
+		} finally {
+			reader.calls.viewer_free(dims);
+		}
 	}
 }
 

@@ -34,7 +34,7 @@ VIEWER_CALL const char *viewer_archive_info(const struct bp_archive *archive, do
 
 /*
  * Loads the first `layers` layers (0: all) of a material into the compact form; preview: every second value along each axis,
- * where there is such a half. *viewer_measured: the same from the bytes of a MERL file.
+ * where there is such a half. viewer_measured: the same from the bytes of a MERL file.
  */
 VIEWER_CALL struct viewer_material *viewer_material_load(const struct bp_archive *archive, double index, uint32_t layers,
                                                          uint32_t preview);
