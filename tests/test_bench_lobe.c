@@ -150,7 +150,7 @@ static void two_albedos_never_go_negative(void **state)
 
 static struct lattice make_table(const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)
 {
-	struct lobe_state truth = {.model = model, .dims = SMALL};
+	struct lobe_state truth = {.model = model};
 	struct expansion table;
 	struct lattice lattice;
 

@@ -143,7 +143,7 @@ static void state_fill(struct lobe_state *out, struct search *search, const doub
 	shape_from_free(out->model, x, shape);
 	for (int a = 0; a < out->model->shape_count; a++)
 		shape[a] = out->shape[a] = (float)shape[a];
-	out->error = sqrt(project(search, shape)) * unit;
+	project(search, shape);
 	for (int c = 0; c < 3; c++) {
 		out->diffuse[c] = (float)(search->diffuse[c] * unit);
 		out->specular[c] = (float)(search->specular[c] * unit);
@@ -193,7 +193,6 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 	if ((status = descend(&search, starts[chosen].x, &best, error)))
 		goto out;
 	state_fill(out, &search, starts[chosen].x, dense.unit);
-	out->dims = lattice->dims;
 	*state = out;
 	out = NULL;
 	status = BP_OK;

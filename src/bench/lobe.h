@@ -47,9 +47,7 @@ struct lobe_model {
 
 struct lobe_state {
 	const struct lobe_model *model;
-	struct lattice_dims dims;
 	float shape[LOBE_SHAPE_MAX], diffuse[3], specular[3];
-	double error; /* E of the fitted cells, 1/sr */
 };
 
 /*
