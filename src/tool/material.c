@@ -45,10 +45,8 @@ static int measured_load(struct material *material, const char *name)
 {
 	char stem[SOURCE_STEM_BYTES];
 	bp_error error;
-	if (lattice_read_path(material->path, &(struct merl_reading){.any_dims = true}, &material->lattice, &error)) {
-		report_error(material->path, NULL, &error);
-		return EXIT_FAILED;
-	}
+	if (lattice_read_path(material->path, &(struct merl_reading){.any_dims = true}, &material->lattice, &error))
+		return report_error(material->path, NULL, &error);
 	source_stem(material->path, stem);
 	name = name ? name : stem;
 	size_t bytes = strnlen(name, sizeof material->name - 1);

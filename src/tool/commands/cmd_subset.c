@@ -120,10 +120,9 @@ static int subset_write(struct subset *subset)
 	bp_error error;
 
 	if (interrupt_install(NULL, &error) ||
-	    archive_subset(selection->archive, selection->index, selection->count, &subset->copy, &totals, &error)) {
-		report_error(totals.reading ? selection->path : subset->copy.output, totals.damaged[0] ? totals.damaged : NULL, &error);
-		return EXIT_FAILED;
-	}
+	    archive_subset(selection->archive, selection->index, selection->count, &subset->copy, &totals, &error))
+		return report_error(totals.reading ? selection->path : subset->copy.output, totals.damaged[0] ? totals.damaged : NULL,
+		                    &error);
 	if (totals.stopped)
 		return interrupt_exit(subset->copy.output);
 	if (!subset->quiet) {
@@ -144,10 +143,8 @@ static int subset_run(struct subset *subset, char **names, int name_count)
 	if (!output_check(subset->copy.output, OUTPUT_KIND_ARCHIVE, subset->force, subset->inputs, 1 + subset->scene_count))
 		return EXIT_FAILED;
 	for (size_t n = 1; n <= subset->scene_count; n++)
-		if (scene_words_add(&subset->words, subset->inputs[n], &error)) {
-			report_error(subset->inputs[n], NULL, &error);
-			return EXIT_FAILED;
-		}
+		if (scene_words_add(&subset->words, subset->inputs[n], &error))
+			return report_error(subset->inputs[n], NULL, &error);
 	scene_words_sort(&subset->words);
 	if (!selection_open(&subset->selection, path, names, name_count) || subset->selection.incomplete || !materials_choose(subset))
 		return EXIT_FAILED;
@@ -172,10 +169,8 @@ static int subset_main(const struct command *self, int argc, char **argv)
 	                                    {"force", 0, option_flag, .to = &subset.force},
 	                                    {0}};
 
-	if (!subset.inputs) {
-		report_text("out of memory");
-		return EXIT_FAILED;
-	}
+	if (!subset.inputs)
+		return report_text("out of memory");
 	int code = options_read(self, argc, argv, rules);
 	if (code == OPTIONS_END && !option_output(self, subset.copy.output, "SCENE.bpk"))
 		code = EXIT_USAGE;
