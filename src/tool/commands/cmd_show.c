@@ -85,7 +85,7 @@ static bp_status reference_read(const char *path, const struct record_head *head
 		return status;
 	if (!file)
 		return error_memory(error, strlen(path));
-	status = measured_read(&(struct source_item){.path = file}, &(struct source_cursor){NULL}, head, out, &packed, error);
+	status = measured_read(&(struct source_item){.path = file}, &(struct source_cursor){NULL, NULL}, head, out, &packed, error);
 	if (!status && !packed)
 		report_warning(file, head->name, "not the file that was packed: its SHA-256 is another");
 	free(file);
