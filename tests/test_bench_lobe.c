@@ -150,7 +150,7 @@ static void two_albedos_never_go_negative(void **state)
 
 static struct lattice make_table(const struct lobe_model *model, const float *shape, const float *diffuse, const float *specular)
 {
-	struct lobe_state truth = {.model = model, .dims = SMALL};
+	struct lobe_state truth = {.model = model};
 	struct expansion table;
 	struct lattice lattice;
 
@@ -172,13 +172,20 @@ static struct lattice make_table(const struct lobe_model *model, const float *sh
 	return lattice;
 }
 
+static bp_status fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective objective, void **state,
+                     bp_error *error)
+{
+	const struct lobe_variant variant = {model, objective};
+	return lobe_fit(&(struct baseline){.variant = &variant}, &(struct bench_material){.lattice = lattice}, state, error);
+}
+
 static void check_recovery_by(enum lobe_objective objective, const struct lobe_model *model, const float *shape,
                               const float *diffuse, const float *specular)
 {
 	struct lattice lattice = make_table(model, shape, diffuse, specular);
 	void *state;
 
-	assert_int_equal(lobe_fit(model, &lattice, objective, &state, NULL), BP_OK);
+	assert_int_equal(fit(model, &lattice, objective, &state, NULL), BP_OK);
 	struct lobe_state *found = state;
 	for (int n = 0; n < model->shape_count; n++)
 		assert_close(found->shape[n], shape[n], 1e-3);
@@ -230,7 +237,7 @@ static void invalid_cells_take_no_part_in_a_fit(void **state)
 		lattice.valid[cell] = 0;
 		lattice.rgb[0][cell] = 1e6;
 	}
-	assert_int_equal(lobe_fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
+	assert_int_equal(fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
 	struct lobe_state *found = fitted;
 	assert_close(found->shape[0], shape[0], 1e-3);
 	assert_close(found->diffuse[0], DIFFUSE[0], 1e-3);
@@ -246,7 +253,7 @@ static void a_table_without_a_valid_cell_is_refused(void **state)
 	(void)state;
 
 	assert_int_equal(lattice_alloc(SMALL, &lattice, NULL), BP_OK);
-	assert_int_equal(lobe_fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, &error), BP_ERROR_BAD_INPUT);
+	assert_int_equal(fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, &error), BP_ERROR_BAD_INPUT);
 	lattice_free(&lattice);
 }
 
@@ -261,7 +268,7 @@ static void a_black_table_gives_a_black_model(void **state)
 		lattice.rgb[0][cell] = lattice.rgb[1][cell] = lattice.rgb[2][cell] = 0;
 		lattice.valid[cell] = 1;
 	}
-	assert_int_equal(lobe_fit(&LOBE_COOK_TORRANCE, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
+	assert_int_equal(fit(&LOBE_COOK_TORRANCE, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
 	struct lobe_state *found = fitted;
 	for (int c = 0; c < 3; c++)
 		assert_true(found->diffuse[c] == 0 && found->specular[c] == 0);

@@ -41,38 +41,32 @@ void directions_make(struct directions *d)
 		}
 }
 
-static bool read_whole(const char *path, bool cold, double *seconds, uint8_t *bytes, size_t room)
+/* A hint that a file's pages be dropped from the cache. */
+static void cache_drop(const char *path)
 {
-	int fd = open(path, O_RDONLY | O_CLOEXEC);
+	const int fd = open(path, O_RDONLY | O_CLOEXEC);
 	if (fd < 0)
-		return false;
-	if (cold) {
-		(void)fdatasync(fd);
-		(void)posix_fadvise(fd, 0, 0, POSIX_FADV_DONTNEED);
-	}
-	double start = wall();
-	ssize_t got;
-	for (size_t done = 0; (got = read(fd, bytes + done, room - done)) > 0;)
-		done += (size_t)got;
-	*seconds = wall() - start;
+		return;
+	(void)fdatasync(fd);
+	(void)posix_fadvise(fd, 0, 0, POSIX_FADV_DONTNEED);
 	close(fd);
-	return got == 0;
 }
 
 static bool reads_time(const char *path, struct series *all)
 {
-	size_t room = merl_file_bytes(LATTICE_MERL) + 1;
-	double seconds;
-	uint8_t *bytes = malloc(room);
-	bool read = bytes && read_whole(path, false, &seconds, bytes, room); /* the first one fills the cache and the pages */
-	for (int cold = 0; cold < 2 && read; cold++) {
+	enum { WARM, CACHED, COLD, READS }; /* the first one fills the cache */
+	bool read = true;
+	for (int n = WARM; n < READS && read; n++) {
+		uint8_t *bytes = NULL;
+		size_t count;
+		double seconds;
+		if (n == COLD)
+			cache_drop(path);
+		read = !time_read(path, &seconds, &bytes, &count, NULL);
+		if (read && n != WARM)
+			note(all, n == COLD ? READ_COLD : READ_CACHED, seconds);
 		free(bytes);
-		bytes = malloc(room); /* fresh memory, as a program that loads it has */
-		read = bytes && read_whole(path, cold, &seconds, bytes, room);
-		if (read)
-			note(all, cold ? READ_COLD : READ_CACHED, seconds);
 	}
-	free(bytes);
 	return read;
 }
 
@@ -93,23 +87,29 @@ bp_material *eval_load(const bp_archive *archive, uint64_t index, bp_form form, 
 
 static void loads_time(const bp_archive *archive, uint64_t index, const bp_material_info *info, struct series *all)
 {
+	static const struct {
+		bp_form form;
+		enum figure figure;
+	} LOADS[] = {{BP_FORM_EXPANDED, LOAD_EXPANDED}, {BP_FORM_COMPACT, LOAD_COMPACT}, {BP_FORM_PREVIEW, LOAD_PREVIEW}};
 	bp_layer preview;
 	if (bp_archive_layers(archive, index, sizeof preview, &preview, 1, NULL, NULL))
 		return;
-	const double first = preview.log_rmse;
-	double seconds;
-	bp_material *material = eval_load(archive, index, BP_FORM_EXPANDED, 0, 0, &seconds);
-	bp_material_free(material);
-	if (material)
-		note(all, LOAD_EXPANDED, seconds);
-	material = eval_load(archive, index, BP_FORM_COMPACT, 0, 0, &seconds);
-	bp_material_free(material);
-	if (material)
-		note(all, LOAD_COMPACT, seconds);
-	material = info->layer_count > 1 ? eval_load(archive, index, BP_FORM_PREVIEW, 0, first, &seconds) : NULL;
-	bp_material_free(material);
-	if (material)
-		note(all, LOAD_PREVIEW, seconds);
+	for (size_t n = 0; n < sizeof LOADS / sizeof *LOADS; n++) {
+		const bool part = LOADS[n].form == BP_FORM_PREVIEW;
+		double seconds;
+		if (part && info->layer_count < 2)
+			continue;
+		bp_material *material = eval_load(archive, index, LOADS[n].form, 0, part ? preview.log_rmse : 0, &seconds);
+		if (material)
+			note(all, LOADS[n].figure, seconds);
+		bp_material_free(material);
+	}
+}
+
+static void raw_take(const struct lattice *raw, uint32_t i, uint32_t j, uint32_t k)
+{
+	const size_t cell = lattice_index(LATTICE_MERL, i < 89 ? i : 89, j < 89 ? j : 89, k < 179 ? k : 179);
+	sink += raw->rgb[0][cell] + raw->rgb[1][cell] + raw->rgb[2][cell];
 }
 
 /* The database's own way: arccosines and arctangents, and the cell by truncation. */
@@ -126,10 +126,7 @@ static void raw_libm(const struct lattice *raw, const struct directions *d)
 		double x = cos(phi_h) * wi[0] + sin(phi_h) * wi[1], y = -sin(phi_h) * wi[0] + cos(phi_h) * wi[1];
 		double phi_d = atan2(y, cos(theta_h) * x - sin(theta_h) * wi[2]);
 		phi_d = phi_d < 0 ? phi_d + M_PI : phi_d;
-		uint32_t i = (uint32_t)(sqrt(theta_h / M_PI_2) * 90), j = (uint32_t)(theta_d / M_PI_2 * 90),
-				 k = (uint32_t)(phi_d / M_PI * 180);
-		size_t cell = lattice_index(LATTICE_MERL, i < 89 ? i : 89, j < 89 ? j : 89, k < 179 ? k : 179);
-		sink += raw->rgb[0][cell] + raw->rgb[1][cell] + raw->rgb[2][cell];
+		raw_take(raw, (uint32_t)(sqrt(theta_h / M_PI_2) * 90), (uint32_t)(theta_d / M_PI_2 * 90), (uint32_t)(phi_d / M_PI * 180));
 	}
 }
 
@@ -139,9 +136,7 @@ static void raw_ours(const struct lattice *raw, const struct directions *d)
 	for (int n = 0; n < EVALUATIONS; n++) {
 		f32x4 at = {0, 0, 0, 0};
 		direction_locate(scale, d->wi[first(n)], d->wo[second(n)], &at);
-		uint32_t i = (uint32_t)at[0], j = (uint32_t)at[1], k = (uint32_t)at[2];
-		size_t cell = lattice_index(LATTICE_MERL, i < 89 ? i : 89, j < 89 ? j : 89, k < 179 ? k : 179);
-		sink += raw->rgb[0][cell] + raw->rgb[1][cell] + raw->rgb[2][cell];
+		raw_take(raw, (uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]);
 	}
 }
 

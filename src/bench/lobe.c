@@ -143,20 +143,21 @@ static void state_fill(struct lobe_state *out, struct search *search, const doub
 	shape_from_free(out->model, x, shape);
 	for (int a = 0; a < out->model->shape_count; a++)
 		shape[a] = out->shape[a] = (float)shape[a];
-	out->error = sqrt(project(search, shape)) * unit;
+	project(search, shape);
 	for (int c = 0; c < 3; c++) {
 		out->diffuse[c] = (float)(search->diffuse[c] * unit);
 		out->specular[c] = (float)(search->specular[c] * unit);
 	}
 }
 
-bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective kind, void **state,
-                   bp_error *error)
+bp_status lobe_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
 {
+	const struct lobe_variant *variant = self->variant;
+	const struct lattice *lattice = material->lattice;
 	const uint32_t stride_d = (lattice->dims.theta_d + SAMPLES_D - 1) / SAMPLES_D;
 	const uint32_t stride_p = (lattice->dims.phi_d + SAMPLES_P - 1) / SAMPLES_P;
 	struct lobe_sample thin = {0}, dense = {0};
-	struct search search = {.model = model};
+	struct search search = {.model = variant->model};
 	struct start starts[STARTS_KEPT];
 	struct lobe_state *out = calloc(1, sizeof *out);
 	double best = HUGE_VAL;
@@ -170,8 +171,8 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 		goto out;
 	if ((status = lobe_sample_take(lattice, THIN * stride_d, THIN * stride_p, &thin, NULL)))
 		thin = (struct lobe_sample){0}; /* so few valid cells: the dense sample serves for both */
-	if (kind == LOBE_RELATIVE && ((status = lobe_sample_make_relative(&dense, error)) ||
-	                              (thin.count && (status = lobe_sample_make_relative(&thin, error)))))
+	if (variant->objective == LOBE_RELATIVE && ((status = lobe_sample_make_relative(&dense, error)) ||
+	                                            (thin.count && (status = lobe_sample_make_relative(&thin, error)))))
 		goto out;
 	search.lobe = malloc(dense.count * sizeof *search.lobe);
 	if (!search.lobe) {
@@ -193,7 +194,6 @@ bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice
 	if ((status = descend(&search, starts[chosen].x, &best, error)))
 		goto out;
 	state_fill(out, &search, starts[chosen].x, dense.unit);
-	out->dims = lattice->dims;
 	*state = out;
 	out = NULL;
 	status = BP_OK;
@@ -203,12 +203,6 @@ out:
 	lobe_sample_free(&dense);
 	free(out);
 	return status;
-}
-
-bp_status lobe_fit_variant(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
-{
-	const struct lobe_variant *variant = self->variant;
-	return lobe_fit(variant->model, material->lattice, variant->objective, state, error);
 }
 
 size_t lobe_parameters(const void *state) { return 6 + (size_t)((const struct lobe_state *)state)->model->shape_count; }

@@ -47,9 +47,7 @@ struct lobe_model {
 
 struct lobe_state {
 	const struct lobe_model *model;
-	struct lattice_dims dims;
 	float shape[LOBE_SHAPE_MAX], diffuse[3], specular[3];
-	double error; /* E of the fitted cells, 1/sr */
 };
 
 /*
@@ -59,15 +57,12 @@ struct lobe_state {
  */
 enum lobe_objective { LOBE_COSINE, LOBE_RELATIVE };
 
-bp_status lobe_fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective objective, void **state,
-                   bp_error *error);
-
-/* The same as a baseline's function, of a baseline whose variant is this. */
+/* What baselines of this kind are variants of; their functions. */
 struct lobe_variant {
 	const struct lobe_model *model;
 	enum lobe_objective objective;
 };
-bp_status lobe_fit_variant(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error);
+bp_status lobe_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error);
 size_t lobe_bytes(const void *state);
 size_t lobe_parameters(const void *state);
 bp_status lobe_expand(const void *state, struct expansion *out, bp_error *error);
@@ -76,8 +71,8 @@ evaluate_fn lobe_evaluate;
 #define LOBE_BASELINE(method, text, lobe_model, lobe_objective) \
 	{ \
 		.name = method, .reference = text, .variant = &(const struct lobe_variant){&lobe_model, lobe_objective}, \
-		.fit = lobe_fit_variant, .bytes = lobe_bytes, .parameters = lobe_parameters, .expand = lobe_expand, \
-		.evaluate = lobe_evaluate, .free_state = free \
+		.fit = lobe_fit, .bytes = lobe_bytes, .parameters = lobe_parameters, .expand = lobe_expand, .evaluate = lobe_evaluate, \
+		.free_state = free \
 	}
 
 /* The models' lobes, for the tests. */

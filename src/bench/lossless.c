@@ -23,7 +23,6 @@ struct codec {
 
 struct lossless_state {
 	const struct codec *codec;
-	struct lattice_dims dims;
 	size_t plain_bytes, bytes;
 	uint8_t *stream;
 };
@@ -99,8 +98,7 @@ static bp_status lossless_fit(const struct baseline *self, const struct bench_ma
 		free(state);
 		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "not a MERL file");
 	}
-	*state = (struct lossless_state){
-		.codec = codec, .dims = material->lattice->dims, .plain_bytes = material->raw_bytes, .stream = malloc(capacity)};
+	*state = (struct lossless_state){.codec = codec, .plain_bytes = material->raw_bytes, .stream = malloc(capacity)};
 	if (!state->stream)
 		status = error_memory(error, capacity);
 	else if (!(state->bytes = codec->compress(material->raw, material->raw_bytes, state->stream, capacity)))
@@ -118,7 +116,7 @@ static size_t lossless_bytes(const void *state) { return ((const struct lossless
 static bp_status lossless_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
 	const struct lossless_state *state = opaque;
-	const size_t cells = lattice_cells(state->dims);
+	const size_t cells = lattice_cells(out->dims);
 	uint8_t *plain = malloc(state->plain_bytes);
 
 	if (!plain)

@@ -111,11 +111,8 @@ bp_status time_read(const char *path, double *seconds, uint8_t **bytes, size_t *
 		status = error_memory(error, (size_t)info.st_size);
 		goto out;
 	}
-	while ((got = read(file, block, READ_BYTES)) > 0) {
-		if (whole && at + (size_t)got <= (size_t)info.st_size)
-			memcpy(whole + at, block, (size_t)got);
+	while ((got = whole ? read(file, whole + at, (size_t)info.st_size + 1 - at) : read(file, block, READ_BYTES)) > 0)
 		at += (size_t)got;
-	}
 	if (got < 0 || at != (size_t)info.st_size) {
 		status = error_set(error, BP_ERROR_IO, at, "%s: read %zu of %lld bytes", path, at, (long long)info.st_size);
 		goto out;

@@ -42,7 +42,10 @@ evaluate_fn evaluate_expansion;
 /* ... and in the raw table of double (a struct lattice): the yardstick of a renderer that reads the measured file. */
 evaluate_fn evaluate_lattice;
 
-/* Reads a whole file as cat does, 128 KiB at a time; wall-clock seconds. *bytes, unless NULL, gets its bytes (malloc'ed). */
+/*
+ * Reads a whole file; wall-clock seconds. Where `bytes` is NULL as cat does, 128 KiB at a time; else into *bytes, fresh memory
+ * (malloc'ed), as a program that loads it does.
+ */
 bp_status time_read(const char *path, double *seconds, uint8_t **bytes, size_t *count, bp_error *error);
 
 #endif

@@ -53,13 +53,8 @@ static void limits_up(const char *root, const char *group, struct cores_limits *
 	for (;;) {
 		limits_of(folder, limits);
 		char *slash = strrchr(folder, '/');
-		if (!slash || (size_t)(slash - folder) < least || !slash[1]) {
-			if (strlen(folder) > least) {
-				folder[least] = '\0';
-				limits_of(folder, limits);
-			}
+		if (!slash || (size_t)(slash - folder) < least)
 			return;
-		}
 		*slash = '\0';
 	}
 }

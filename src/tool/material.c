@@ -23,20 +23,17 @@ static int archived_load(struct material *material, char *name)
 	struct selection selection;
 	struct index_entry entry = {.name = ""};
 	bp_error error;
-	int code = EXIT_FAILED;
+	int code = EXIT_OK;
 
 	if (!selection_open(&selection, material->path, &name, 1))
 		return EXIT_FAILED;
 	if (selection.incomplete)
-		goto out; /* reported */
-	if (selection_entry(&selection, 0, &entry, &error) ||
-	    material_decode(selection.archive, &entry, &material->head, &material->model, &material->table, &error)) {
-		report_error(material->path, name, &error);
-		goto out;
-	}
-	memcpy(material->name, material->head.name, sizeof material->name);
-	code = EXIT_OK;
-out:
+		code = EXIT_FAILED; /* reported */
+	else if (selection_entry(&selection, 0, &entry, &error) ||
+	         material_decode(selection.archive, &entry, &material->head, &material->model, &material->table, &error))
+		code = report_error(material->path, name, &error);
+	else
+		memcpy(material->name, material->head.name, sizeof material->name);
 	selection_close(&selection);
 	return code;
 }
@@ -45,10 +42,8 @@ static int measured_load(struct material *material, const char *name)
 {
 	char stem[SOURCE_STEM_BYTES];
 	bp_error error;
-	if (lattice_read_path(material->path, &(struct merl_reading){.any_dims = true}, &material->lattice, &error)) {
-		report_error(material->path, NULL, &error);
-		return EXIT_FAILED;
-	}
+	if (lattice_read_path(material->path, &(struct merl_reading){.any_dims = true}, &material->lattice, &error))
+		return report_error(material->path, NULL, &error);
 	source_stem(material->path, stem);
 	name = name ? name : stem;
 	size_t bytes = strnlen(name, sizeof material->name - 1);
@@ -79,8 +74,7 @@ int material_load(const struct command *command, char **operands, int operand_co
 	} else if (status == BP_ERROR_NOT_OURS) {
 		code = measured_load(material, operand_count > 1 ? operands[1] : NULL);
 	} else {
-		report_error(material->path, NULL, &error);
-		code = EXIT_FAILED;
+		code = report_error(material->path, NULL, &error);
 	}
 	if (code != EXIT_OK)
 		material_free(material);

@@ -79,7 +79,7 @@ bp_status measured_read(const struct source_item *source, struct source_cursor *
 	if (!status && (status = lattice_take_holes(out, head->options.zeros, &holes, &reason)))
 		lattice_free(out);
 	if (status)
-		return error_set(error, status, reason.offset, "%s: %s", source->path, reason.message);
+		return error_set(error, status, BP_NO_OFFSET, "%s: %s", source->path, reason.message);
 	sha256_finish(&sha, digest);
 	if (packed)
 		*packed = memcmp(digest, head->source.sha256, sizeof digest) == 0;

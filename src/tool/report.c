@@ -50,7 +50,7 @@ static void line_print(struct line *line)
 	fwrite(line->text, 1, line->used, stderr);
 }
 
-void report_text(const char *format, ...)
+int report_text(const char *format, ...)
 {
 	struct line line = {.used = 0};
 	va_list arguments;
@@ -59,6 +59,7 @@ void report_text(const char *format, ...)
 	line_add_format(&line, format, arguments);
 	va_end(arguments);
 	line_print(&line);
+	return EXIT_FAILED;
 }
 
 /* What to do about it, where that does not depend on the case. */
@@ -87,7 +88,7 @@ void error_describe(const bp_error *error, char *text, size_t bytes)
 	         remedy ? remedy : "");
 }
 
-void report_error(const char *file, const char *material, const bp_error *error)
+int report_error(const char *file, const char *material, const bp_error *error)
 {
 	struct line line = {.used = 0};
 	char text[1024];
@@ -105,6 +106,7 @@ void report_error(const char *file, const char *material, const bp_error *error)
 		line_add(&line, text);
 	}
 	line_print(&line);
+	return EXIT_FAILED;
 }
 
 void report_warning(const char *file, const char *material, const char *format, ...)

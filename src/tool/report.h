@@ -14,11 +14,11 @@
 #include "brdfpack.h"
 #include "command.h"
 
-/* "brdfpack: " and a formatted line. */
-void report_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* "brdfpack: " and a formatted line; returns EXIT_FAILED, for commands that end with it. */
+int report_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* "brdfpack: FILE: MATERIAL: " and the error; `file` and `material` may be NULL and are then left out. */
-void report_error(const char *file, const char *material, const bp_error *error);
+/* "brdfpack: FILE: MATERIAL: " and the error; `file` and `material` may be NULL and are then left out. Returns EXIT_FAILED. */
+int report_error(const char *file, const char *material, const bp_error *error);
 
 /* The same with "warning: " before a formatted text. */
 void report_warning(const char *file, const char *material, const char *format, ...) __attribute__((format(printf, 3, 4)));

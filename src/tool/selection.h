@@ -11,6 +11,15 @@
 #include "archive/reader.h"
 #include "command.h"
 
+/*
+ * A material's name as people write it, as it is or as the measured file's, NAME.binary, FOLDER/NAME.binary: without path and
+ * suffix. False: it is no legal name.
+ */
+bool selection_name_bare(const char *written, char name[BP_NAME_BYTES_MAX + 1]);
+
+/* bp_archive_find for what `written` may mean, from the most literal on: the first that is there. BP_ERROR_NOT_FOUND: none is. */
+bp_status selection_name_find(const bp_archive *archive, const char *written, uint64_t *index, bp_error *error);
+
 /* An open archive and the materials that were asked for. */
 struct selection {
 	const char *path;

@@ -113,6 +113,19 @@ static void news_take(struct workers *pool, struct worker *worker)
 	}
 }
 
+bp_status workers_deliver(struct byte_buffer *buffer, uint8_t **record, size_t *record_bytes, bp_error *error)
+{
+	if (buffer->failed) {
+		const size_t bytes = buffer->capacity;
+		byte_buffer_free(buffer);
+		return error_memory(error, bytes);
+	}
+	*record = buffer->bytes;
+	*record_bytes = buffer->count;
+	*buffer = (struct byte_buffer){0};
+	return BP_OK;
+}
+
 bp_status workers_start(const struct workers_options *options, struct workers **out, bp_error *error)
 {
 	struct workers *pool = calloc(1, sizeof *pool);

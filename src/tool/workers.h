@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "brdfpack.h"
+#include "bytes.h"
 #include "stage.h"
 
 enum { WORKERS_MAX = 256, WORKER_RECORD_BYTES_MAX = 1 << 24, WORKER_NAME_BYTES_MAX = 255 };
@@ -49,6 +50,9 @@ struct workers_options {
 	void *result_user;
 	int wake_fd; /* workers_wait also returns when this becomes readable; -1: none */
 };
+
+/* For a worker_fn: hands over what it wrote into a buffer, which is empty afterwards. BP_ERROR_MEMORY where it did not fit. */
+bp_status workers_deliver(struct byte_buffer *buffer, uint8_t **record, size_t *record_bytes, bp_error *error);
 
 /* Starts as many of the workers as the system allows; an error when that is none. */
 bp_status workers_start(const struct workers_options *options, struct workers **out, bp_error *error);

@@ -160,14 +160,11 @@ static void build_prepare_and_work(struct build *build)
 	bp_error error;
 	int wake_fd;
 
-	if (output_look(build, false, &error)) {
-		build_stop(build, options->output, &error);
+	if (build_stops(build, options->output, output_look(build, false, &error), &error))
 		return;
-	}
-	if (options->manifest && manifest_read(options->manifest, &build->manifest, &error)) {
-		build_stop(build, options->manifest, &error);
+	if (options->manifest &&
+	    build_stops(build, options->manifest, manifest_read(options->manifest, &build->manifest, &error), &error))
 		return;
-	}
 	build_inputs_collect(build);
 	if (!build_goes_on(build))
 		return;
@@ -177,14 +174,11 @@ static void build_prepare_and_work(struct build *build)
 	if ((build->items.count == 0 && !streams && !shard_is_empty(build)) ||
 	    (build->options->strict && !totals_whole(&build->totals)))
 		return;
-	if (output_look(build, true, &error) || previous_open(build, &error) || records_open(build, &error)) {
-		build_stop(build, options->output, &error);
+	if (build_stops(build, options->output, output_look(build, true, &error), &error) ||
+	    build_stops(build, options->output, previous_open(build, &error), &error) ||
+	    build_stops(build, options->output, records_open(build, &error), &error) ||
+	    build_stops(build, NULL, interrupt_install(&wake_fd, &error), &error))
 		return;
-	}
-	if (interrupt_install(&wake_fd, &error)) {
-		build_stop(build, NULL, &error);
-		return;
-	}
 	unsigned count = options->workers;
 	if (!streams && count > build->items.count)
 		count = (unsigned)build->items.count;
@@ -197,10 +191,8 @@ static void build_prepare_and_work(struct build *build)
 	                               .result = outcomes_take_result,
 	                               .result_user = build,
 	                               .wake_fd = wake_fd};
-	if (workers_start(&pool, &build->workers, &error)) {
-		build_stop(build, NULL, &error);
+	if (build_stops(build, NULL, workers_start(&pool, &build->workers, &error), &error))
 		return;
-	}
 	progress_start(!options->quiet);
 	work(build);
 	progress_stop();
@@ -229,10 +221,8 @@ int build_run(const struct build_options *options)
 	bp_archive_close(build.previous);
 	container_close(build.stream);
 	bool whole = totals_whole(&build.totals);
-	if (build_goes_on(&build) && (build.totals.packed > 0 || shard_is_empty(&build)) && (whole || !options->strict)) {
-		if (archive_write(&build, &written, &error))
-			build_stop(&build, options->output, &error);
-	}
+	if (build_goes_on(&build) && (build.totals.packed > 0 || shard_is_empty(&build)) && (whole || !options->strict))
+		build_stops(&build, options->output, archive_write(&build, &written, &error), &error);
 	build.totals.seconds = clock_seconds() - start;
 	int signal_number = written ? 0 : interrupt_signal();
 	/* With --strict a refusal is the answer; what else ended it may be mended. */

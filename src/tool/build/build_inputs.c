@@ -88,22 +88,18 @@ void build_inputs_collect(struct build *build)
 	                                       .user = build};
 	bp_error error;
 
-	if (source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count, &options, &build->sources,
-	                &error)) {
-		build_stop(build, NULL, &error);
+	const bp_status status = source_scan((const char *const *)build->options->inputs, (size_t)build->options->input_count,
+	                                     &options, &build->sources, &error);
+	if (build_stops(build, NULL, status, &error))
 		return;
-	}
 	build->scanned = true;
 	for (size_t i = 0; i < build->sources.item_count; i++) {
-		if (items_add(&build->items, &build->sources.items[i], false, &error)) {
-			build_stop(build, NULL, &error);
+		if (build_stops(build, NULL, items_add(&build->items, &build->sources.items[i], false, &error), &error))
 			return;
-		}
 		build->bytes_total += item_weight(&build->sources.items[i]);
 	}
 	build->listed_count = build->items.count;
-	if (order_make(build, &error))
-		build_stop(build, NULL, &error);
+	build_stops(build, NULL, order_make(build, &error), &error);
 }
 
 /* Opens streams until one has a next member. */
@@ -126,9 +122,7 @@ static bool member_find(struct build *build, struct source_item *member)
 		bp_status status = source_stream_next(&build->sources, stream, build->stream, member, &more, &error);
 		if (status && member->name) {
 			const size_t number = build->items.count;
-			if (items_add(&build->items, member, true, &error))
-				build_stop(build, NULL, &error);
-			else
+			if (!build_stops(build, NULL, items_add(&build->items, member, true, &error), &error))
 				outcomes_refuse(build, number, &error);
 		} else if (status) {
 			damage_take(build, build->sources.streams[stream].path, &error);
@@ -190,11 +184,7 @@ bool build_inputs_next(struct build *build, struct job *job)
 		while ((slot = workers_slot_take(build->workers)) < 0 && build_goes_on(build))
 			workers_wait(build->workers, -1);
 		size_t number = build->items.count;
-		if (items_add(&build->items, &member, true, &error)) {
-			build_stop(build, NULL, &error);
-			return false;
-		}
-		if (slot < 0)
+		if (build_stops(build, NULL, items_add(&build->items, &member, true, &error), &error) || slot < 0)
 			return false;
 		*job = (struct job){.number = number, .name = build->items.item[number].source.name, .slot = slot};
 		bp_status status = member_copy(build, workers_slot_fd(build->workers, slot), &job->slot_bytes, &error);

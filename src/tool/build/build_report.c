@@ -84,13 +84,12 @@ void report_passed_over(const char *path, const char *reason, bool json, bool qu
 		report_warning(path, NULL, "%s; skipped", reason);
 }
 
-static void material_json(const struct item *item, const char *label, const struct outcome *outcome)
+static void material_json(const struct item *item, const char *label, const struct outcome *outcome,
+                          char warnings[WARNINGS_MAX][WARNING_BYTES], int count)
 {
 	struct json json = json_begin(stdout, false);
 	json_string(&json, "name", item->source.name);
 	json_string(&json, "path", label);
-	char warnings[WARNINGS_MAX][WARNING_BYTES];
-	int said, count = warnings_list(outcome, warnings, &said);
 	json_integer(&json, "bytes", outcome->head.record_bytes);
 	json_number(&json, "seconds", outcome->seconds);
 	json_object(&json, "cpu_seconds");
@@ -116,11 +115,10 @@ void report_material(const struct item *item, const struct outcome *outcome, boo
 		report_unpacked(label, item->source.name, &outcome->error, json);
 		return;
 	}
-	if (json)
-		material_json(item, label, outcome);
 	char warnings[WARNINGS_MAX][WARNING_BYTES];
-	int said;
-	warnings_list(outcome, warnings, &said);
+	int said, count = warnings_list(outcome, warnings, &said);
+	if (json)
+		material_json(item, label, outcome, warnings, count);
 	for (int i = 0; i < said && !quiet; i++)
 		report_warning(label, item->source.name, "%s", warnings[i]);
 }

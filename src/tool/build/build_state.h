@@ -44,11 +44,14 @@ struct build {
 /* True when the build goes on: no error that ends it, no signal. */
 static inline bool build_goes_on(const struct build *build) { return !build->stopped && !interrupt_signal(); }
 
-/* Reports an error that ends the build. */
-static inline void build_stop(struct build *build, const char *file, const bp_error *error)
+/* Whether this status ends the build: then the error has been reported. */
+static inline bool build_stops(struct build *build, const char *file, bp_status status, const bp_error *error)
 {
-	report_error(file, NULL, error);
-	build->stopped = true;
+	if (status) {
+		report_error(file, NULL, error);
+		build->stopped = true;
+	}
+	return status != BP_OK;
 }
 
 /*

@@ -94,21 +94,6 @@ static bool is_black(const struct lattice *lattice)
 	return true;
 }
 
-/* Both in one piece. The record is freed. */
-static bp_status delivery_make(const struct delivery *delivery, uint8_t *record, size_t record_bytes, uint8_t **out,
-                               size_t *out_bytes, bp_error *error)
-{
-	uint8_t *whole = malloc(sizeof *delivery + record_bytes);
-	if (whole) {
-		memcpy(whole, delivery, sizeof *delivery);
-		memcpy(whole + sizeof *delivery, record, record_bytes);
-		*out = whole;
-		*out_bytes = sizeof *delivery + record_bytes;
-	}
-	free(record);
-	return whole ? BP_OK : error_memory(error, sizeof *delivery + record_bytes);
-}
-
 bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, size_t *out_bytes, bp_error *error)
 {
 	static struct source_cursor cursor; /* this process's own: it keeps a zip open from member to member */
@@ -149,5 +134,11 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 		status = record_get(build, job->name, &lattice, &carried, &delivery, &record, &record_bytes, error);
 	lattice_free(&lattice);
 	free(carried.bytes);
-	return status ? status : delivery_make(&delivery, record, record_bytes, out, out_bytes, error);
+	if (status)
+		return status;
+	struct byte_buffer whole = {0};
+	write_bytes(&whole, &delivery, sizeof delivery);
+	write_bytes(&whole, record, record_bytes);
+	free(record);
+	return workers_deliver(&whole, out, out_bytes, error);
 }

@@ -24,31 +24,23 @@ static char *journal_path(const char *target)
 	return output_path_beside(target, name);
 }
 
-static bp_status header_make(const char *target, const struct fit_options *options, uint8_t out[JOURNAL_HEADER_BYTES],
-                             bp_error *error)
+static void header_make(const char *target, const struct fit_options *options, uint8_t out[JOURNAL_HEADER_BYTES])
 {
 	const struct profile_codec *codec = profile_codec_find(options->profile);
 	const char *slash = strrchr(target, '/'), *name = slash ? slash + 1 : target;
 	const size_t name_bytes = strlen(name);
-	struct byte_buffer buffer = {0};
-	write_bytes(&buffer, JOURNAL_MAGIC, JOURNAL_MAGIC_BYTES);
-	write_u32(&buffer, JOURNAL_VERSION);
-	write_u32(&buffer, (uint32_t)options->profile);
-	write_u32(&buffer, codec ? codec->version : 0);
-	write_u32(&buffer, options->budget_bytes);
-	write_u32(&buffer, (uint32_t)options->effort);
-	write_f64(&buffer, options->max_error);
-	write_u32(&buffer, (uint32_t)name_bytes);
-	write_bytes(&buffer, name, name_bytes < 256 ? name_bytes : 256);
-	if (!buffer.failed && buffer.count < JOURNAL_HEADER_BYTES - 4)
-		write_zeros(&buffer, JOURNAL_HEADER_BYTES - 4 - buffer.count);
-	const bool made = !buffer.failed;
-	if (made) {
-		memcpy(out, buffer.bytes, JOURNAL_HEADER_BYTES - 4);
-		store_u32(out + JOURNAL_HEADER_BYTES - 4, bytes_crc32(out, JOURNAL_HEADER_BYTES - 4));
-	}
-	byte_buffer_free(&buffer);
-	return made ? BP_OK : error_memory(error, JOURNAL_HEADER_BYTES);
+	uint64_t bound;
+	memcpy(&bound, &options->max_error, sizeof bound);
+	const uint32_t words[] = {JOURNAL_VERSION,         (uint32_t)options->profile, codec ? codec->version : 0,
+	                          options->budget_bytes,   (uint32_t)options->effort,  (uint32_t)bound,
+	                          (uint32_t)(bound >> 32), (uint32_t)name_bytes};
+	uint8_t *at = out + JOURNAL_MAGIC_BYTES;
+	memset(out, 0, JOURNAL_HEADER_BYTES);
+	memcpy(out, JOURNAL_MAGIC, JOURNAL_MAGIC_BYTES);
+	for (size_t n = 0; n < sizeof words / sizeof *words; n++, at += 4)
+		store_u32(at, words[n]);
+	memcpy(at, name, name_bytes < 256 ? name_bytes : 256);
+	store_u32(out + JOURNAL_HEADER_BYTES - 4, bytes_crc32(out, JOURNAL_HEADER_BYTES - 4));
 }
 
 /* Sizes up what follows the header: entries up to the first that is not whole. */
@@ -180,9 +172,10 @@ bp_status journal_open(const char *output, const struct fit_options *options, bo
 
 	*remark = '\0';
 	bp_status status = output_path_resolve(output, &target, &found, &about, error);
-	if (!status)
-		status = header_make(target, options, header, error);
-	if (!status && !(journal.path = journal_path(target)))
+	if (status)
+		goto out;
+	header_make(target, options, header);
+	if (!(journal.path = journal_path(target)))
 		status = error_memory(error, strlen(target));
 	free(target);
 	if (status)

@@ -89,11 +89,9 @@ static bp_status record_store(struct build *build, struct item *item, const stru
 static struct outcome *outcome_create(struct build *build)
 {
 	struct outcome *outcome = calloc(1, sizeof *outcome);
-	if (!outcome) {
-		bp_error error;
-		error_memory(&error, sizeof *outcome);
-		build_stop(build, NULL, &error);
-	}
+	bp_error error;
+	if (!outcome)
+		build_stops(build, NULL, error_memory(&error, sizeof *outcome), &error);
 	return outcome;
 }
 
@@ -122,12 +120,11 @@ void outcomes_take_result(void *user, const struct job_result *result)
 	outcome->error = result->error;
 	if (!outcome->error.status)
 		delivery_accept(build, item, result, outcome, &outcome->error);
-	if (!outcome->error.status) {
-		if (record_store(build, item, outcome, result->record + sizeof(struct delivery), &error)) {
-			free(outcome);
-			build_stop(build, build->options->output, &error);
-			return;
-		}
+	if (!outcome->error.status &&
+	    build_stops(build, build->options->output,
+	                record_store(build, item, outcome, result->record + sizeof(struct delivery), &error), &error)) {
+		free(outcome);
+		return;
 	}
 	outcome_take(build, item, outcome);
 }

@@ -30,10 +30,8 @@ static int merge_write(bp_archive **archives, char **paths, size_t count, const 
 	bp_error error;
 
 	if (interrupt_install(NULL, &error) ||
-	    archive_merge((const struct bp_archive *const *)archives, count, options, &totals, &failed, &error)) {
-		report_error(totals.reading ? paths[failed] : options->output, totals.damaged[0] ? totals.damaged : NULL, &error);
-		return EXIT_FAILED;
-	}
+	    archive_merge((const struct bp_archive *const *)archives, count, options, &totals, &failed, &error))
+		return report_error(totals.reading ? paths[failed] : options->output, totals.damaged[0] ? totals.damaged : NULL, &error);
 	if (totals.stopped)
 		return interrupt_exit(options->output);
 	if (!quiet) {
@@ -67,19 +65,16 @@ static int merge_main(const struct command *self, int argc, char **argv)
 		return report_usage(self, "no archive");
 
 	const size_t count = (size_t)(argc - optind);
-	if (options.shards && options.shards != count) {
-		report_text("%s: not written: %" PRIu32 " shards are expected, %zu archive%s given", options.output, options.shards,
-		            count, count == 1 ? " is" : "s are");
-		return EXIT_FAILED;
-	}
+	if (options.shards && options.shards != count)
+		return report_text("%s: not written: %" PRIu32 " shards are expected, %zu archive%s given", options.output,
+		                   options.shards, count, count == 1 ? " is" : "s are");
 	if (!output_check(options.output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, count))
 		return EXIT_FAILED;
 	files_allow(count);
 	bp_archive **archives = calloc(count, sizeof *archives);
 	if (!archives) {
 		error_memory(&error, count * sizeof *archives);
-		report_error(NULL, NULL, &error);
-		return EXIT_FAILED;
+		return report_error(NULL, NULL, &error);
 	}
 	size_t opened = 0;
 	code = EXIT_FAILED;

@@ -30,8 +30,7 @@ static int recover_main(const struct command *self, int argc, char **argv)
 		return EXIT_FAILED;
 	if (archive_recover(argv[optind], output, loss_report, argv[optind], &recovery, &error) != BP_OK) {
 		/* what cannot be read or written names itself; what is no archive, here */
-		report_error(error.status == BP_ERROR_NOT_OURS ? argv[optind] : NULL, NULL, &error);
-		return EXIT_FAILED;
+		return report_error(error.status == BP_ERROR_NOT_OURS ? argv[optind] : NULL, NULL, &error);
 	}
 	report_remark(output, &error);
 	text_print(output, 0);

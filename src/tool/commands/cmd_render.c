@@ -44,16 +44,13 @@ static int material_render(const struct render_options *options, const struct ma
 	struct lookup_table table = {0};
 	struct sphere_image image = {0};
 	bp_error error;
-	int code = EXIT_FAILED;
+	int code = EXIT_OK;
 
 	if (table_make(material, &table, &error) || sphere_image_alloc(options->size, &image, &error) ||
-	    sphere_render(options->lighting, &table, &image, &error)) {
-		report_error(material->path, material->name, &error);
-	} else if (image_write(options, &image, &error)) {
-		report_error(NULL, NULL, &error); /* names the output */
-	} else {
-		code = EXIT_OK;
-	}
+	    sphere_render(options->lighting, &table, &image, &error))
+		code = report_error(material->path, material->name, &error);
+	else if (image_write(options, &image, &error))
+		code = report_error(NULL, NULL, &error); /* names the output */
 	sphere_image_free(&image);
 	lookup_table_free(&table);
 	return code;

@@ -85,7 +85,7 @@ static bp_status reference_read(const char *path, const struct record_head *head
 		return status;
 	if (!file)
 		return error_memory(error, strlen(path));
-	status = measured_read(&(struct source_item){.path = file}, &(struct source_cursor){NULL}, head, out, &packed, error);
+	status = measured_read(&(struct source_item){.path = file}, &(struct source_cursor){NULL, NULL}, head, out, &packed, error);
 	if (!status && !packed)
 		report_warning(file, head->name, "not the file that was packed: its SHA-256 is another");
 	free(file);
@@ -161,26 +161,18 @@ static int show_draw(struct show *show, const struct show_options *options)
 
 	if (material->measured) {
 		show->truth = &material->lattice;
-		if (material_pack(show, options, &error)) {
-			report_error(material->path, NULL, &error);
-			return EXIT_FAILED;
-		}
+		if (material_pack(show, options, &error))
+			return report_error(material->path, NULL, &error);
 	} else if (options->reference) {
-		if (reference_read(options->reference, &material->head, &show->reference, &error)) {
-			report_error(NULL, NULL, &error); /* names the file */
-			return EXIT_FAILED;
-		}
+		if (reference_read(options->reference, &material->head, &show->reference, &error))
+			return report_error(NULL, NULL, &error); /* names the file */
 		show->truth = &show->reference;
 	}
-	if (show_measure(show, &error)) {
-		report_error(material->path, material->name, &error);
-		return EXIT_FAILED;
-	}
+	if (show_measure(show, &error))
+		return report_error(material->path, material->name, &error);
 	figure_describe(show, options);
-	if (figure_write(options->output, options->svg, &show->figure, &error)) {
-		report_error(NULL, NULL, &error); /* names the output */
-		return EXIT_FAILED;
-	}
+	if (figure_write(options->output, options->svg, &show->figure, &error))
+		return report_error(NULL, NULL, &error); /* names the output */
 	return EXIT_OK;
 }
 
@@ -212,10 +204,8 @@ static int show_main(const struct command *self, int argc, char **argv)
 	if (inputs[0] && !output_check(options.output, OUTPUT_KIND_PICTURE, options.force, inputs, 2))
 		return EXIT_FAILED;
 	struct show *show = calloc(1, sizeof *show);
-	if (!show) {
-		report_text("out of memory");
-		return EXIT_FAILED;
-	}
+	if (!show)
+		return report_text("out of memory");
 	code = material_load(self, argv + optind, argc - optind, &show->material);
 	if (code == EXIT_OK)
 		code = options_fit(self, &options, &show->material);

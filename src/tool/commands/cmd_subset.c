@@ -1,6 +1,5 @@
 #include "tool/command.h"
 #include "tool/interrupt.h"
-#include "tool/material_name.h"
 #include "tool/options.h"
 #include "tool/output_check.h"
 #include "tool/report.h"
@@ -17,16 +16,13 @@
 #include <stdlib.h>
 
 struct subset {
-	const char *path; /* of the archive */
 	struct copy_options copy;
 	bool quiet, force;
 	bool lacking; /* a scene names a material that the archive has not, or has in another Unicode form */
 	struct scene_words words;
 	size_t scene_count;
 	const char **inputs; /* the archive, then the scenes: for the output's check */
-	bp_archive *archive;
-	uint64_t *index; /* of the materials wanted, ascending; NULL: all */
-	uint64_t count;
+	struct selection selection;
 };
 
 static int ascending(const void *a, const void *b)
@@ -35,93 +31,98 @@ static int ascending(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Names of scenes that are there in another Unicode form only. */
-static void other_forms_report(struct subset *subset, struct selection *selection, struct normal_forms *forms)
+static void word_missing(struct subset *subset, size_t number)
 {
+	const struct scene_word *word = &subset->words.word[number];
+	selection_missing_report(&subset->selection, word->text, word->file);
+	subset->lacking = true;
+}
+
+/* Names of scenes that are there in another Unicode form only. */
+static void other_forms_report(struct subset *subset, struct normal_forms *forms)
+{
+	bp_archive *archive = subset->selection.archive;
 	struct index_page leaf = {0};
 	struct index_entry entry;
 	size_t number;
-	for (uint64_t n = 0; forms->count > 0 && n < bp_archive_count(selection->archive); n++) {
-		if (archive_entry(selection->archive, n, &leaf, &entry, NULL))
+	for (uint64_t n = 0; forms->count > 0 && n < bp_archive_count(archive); n++) {
+		if (archive_entry(archive, n, &leaf, &entry, NULL))
 			return; /* copying will say why */
-		if (normal_forms_find(forms, entry.name, &number)) {
-			selection_missing_report(selection, subset->words.word[number].text, subset->words.word[number].file);
-			subset->lacking = true;
-		}
+		if (normal_forms_find(forms, entry.name, &number))
+			word_missing(subset, number);
 	}
 }
 
 /* Adds the materials whose names, or measured files, are among the scenes' words. Files that are not there are told. */
-static bool scenes_find(struct subset *subset, struct selection *selection)
+static bool scenes_find(struct subset *subset)
 {
+	struct selection *selection = &subset->selection;
 	struct normal_forms forms = {0};
 	char name[BP_NAME_BYTES_MAX + 1];
 	bp_error error;
 	bp_status status = BP_OK;
 	for (size_t n = 0; n < subset->words.count; n++) {
 		const struct scene_word *word = &subset->words.word[n];
-		status = material_name_find(selection->archive, word->text, &subset->index[subset->count], &error);
+		status = selection_name_find(selection->archive, word->text, &selection->index[selection->count], &error);
 		if (!status) {
-			subset->count++;
+			selection->count++;
 		} else if (status != BP_ERROR_NOT_FOUND) {
-			report_error(subset->path, word->text, &error);
+			report_error(selection->path, word->text, &error);
 			break;
 		} else if (source_suffix_bytes(word->text) && !word->spare) {
-			selection_missing_report(selection, word->text, word->file);
-			subset->lacking = true;
-		} else if (!word->spare && material_name_bare(word->text, name)) {
+			word_missing(subset, n);
+		} else if (!word->spare && selection_name_bare(word->text, name)) {
 			normal_forms_add(&forms, name, n);
 		}
 		status = BP_OK;
 	}
 	if (!status)
-		other_forms_report(subset, selection, &forms);
+		other_forms_report(subset, &forms);
 	normal_forms_free(&forms);
 	return !status;
 }
 
-/* Which materials: those named and those the scenes name, each once, in the archive's order. */
-static bool materials_choose(struct subset *subset, struct selection *selection, int name_count)
+/* Makes the selection those named and those the scenes name, each once, in the archive's order; or leaves it at all. */
+static bool materials_choose(struct subset *subset)
 {
-	bp_error error;
-	size_t room = (size_t)name_count + subset->words.count;
-	if (name_count == 0 && subset->scene_count == 0) {
-		subset->count = selection->count;
+	struct selection *selection = &subset->selection;
+	if (selection->all && subset->scene_count == 0)
 		return true;
-	}
-	subset->index = malloc((room ? room : 1) * sizeof *subset->index);
-	if (!subset->index) {
-		error_memory(&error, room * sizeof *subset->index);
-		report_error(subset->path, NULL, &error);
+	const size_t named = selection->all ? 0 : (size_t)selection->count, room = named + subset->words.count + 1;
+	uint64_t *index = realloc(selection->index, room * sizeof *index), kept = 0;
+	if (!index) {
+		bp_error error;
+		error_memory(&error, room * sizeof *index);
+		report_error(selection->path, NULL, &error);
 		return false;
 	}
-	for (uint64_t n = 0; name_count > 0 && n < selection->count; n++)
-		subset->index[subset->count++] = selection->index[n];
-	if (!scenes_find(subset, selection))
+	selection->index = index;
+	selection->count = named;
+	selection->all = false;
+	if (!scenes_find(subset))
 		return false;
-	if (subset->count == 0) {
-		report_text("%s: no material's name stands between quotes in the scene files; not written", subset->path);
+	if (selection->count == 0) {
+		report_text("%s: no material's name stands between quotes in the scene files; not written", selection->path);
 		return false;
 	}
-	uint64_t kept = 0;
-	qsort(subset->index, subset->count, sizeof *subset->index, ascending);
-	for (uint64_t n = 0; n < subset->count; n++)
-		if (kept == 0 || subset->index[kept - 1] != subset->index[n])
-			subset->index[kept++] = subset->index[n];
-	subset->count = kept;
+	qsort(index, selection->count, sizeof *index, ascending);
+	for (uint64_t n = 0; n < selection->count; n++)
+		if (kept == 0 || index[kept - 1] != index[n])
+			index[kept++] = index[n];
+	selection->count = kept;
 	return true;
 }
 
 static int subset_write(struct subset *subset)
 {
+	const struct selection *selection = &subset->selection;
 	struct copy_totals totals = {0};
 	bp_error error;
 
 	if (interrupt_install(NULL, &error) ||
-	    archive_subset(subset->archive, subset->index, subset->count, &subset->copy, &totals, &error)) {
-		report_error(totals.reading ? subset->path : subset->copy.output, totals.damaged[0] ? totals.damaged : NULL, &error);
-		return EXIT_FAILED;
-	}
+	    archive_subset(selection->archive, selection->index, selection->count, &subset->copy, &totals, &error))
+		return report_error(totals.reading ? selection->path : subset->copy.output, totals.damaged[0] ? totals.damaged : NULL,
+		                    &error);
 	if (totals.stopped)
 		return interrupt_exit(subset->copy.output);
 	if (!subset->quiet) {
@@ -136,25 +137,18 @@ static int subset_write(struct subset *subset)
 /* With everything that is allocated in *subset; the caller frees it. */
 static int subset_run(struct subset *subset, char **names, int name_count)
 {
-	struct selection selection;
-	int result = EXIT_FAILED;
+	const char *const path = subset->inputs[0];
 	bp_error error;
 
 	if (!output_check(subset->copy.output, OUTPUT_KIND_ARCHIVE, subset->force, subset->inputs, 1 + subset->scene_count))
 		return EXIT_FAILED;
 	for (size_t n = 1; n <= subset->scene_count; n++)
-		if (scene_words_add(&subset->words, subset->inputs[n], &error)) {
-			report_error(subset->inputs[n], NULL, &error);
-			return EXIT_FAILED;
-		}
+		if (scene_words_add(&subset->words, subset->inputs[n], &error))
+			return report_error(subset->inputs[n], NULL, &error);
 	scene_words_sort(&subset->words);
-	if (selection_open(&selection, subset->path, names, name_count)) {
-		subset->archive = selection.archive;
-		if (!selection.incomplete && materials_choose(subset, &selection, name_count))
-			result = subset_write(subset);
-		selection_close(&selection);
-	}
-	return result;
+	if (!selection_open(&subset->selection, path, names, name_count) || subset->selection.incomplete || !materials_choose(subset))
+		return EXIT_FAILED;
+	return subset_write(subset);
 }
 
 static bool scene_take(const struct command *self, const struct option_rule *rule, const char *text)
@@ -175,21 +169,19 @@ static int subset_main(const struct command *self, int argc, char **argv)
 	                                    {"force", 0, option_flag, .to = &subset.force},
 	                                    {0}};
 
-	if (!subset.inputs) {
-		report_text("out of memory");
-		return EXIT_FAILED;
-	}
+	if (!subset.inputs)
+		return report_text("out of memory");
 	int code = options_read(self, argc, argv, rules);
 	if (code == OPTIONS_END && !option_output(self, subset.copy.output, "SCENE.bpk"))
 		code = EXIT_USAGE;
 	if (code == OPTIONS_END && optind >= argc)
 		code = report_usage(self, "no archive");
 	if (code == OPTIONS_END) {
-		subset.path = subset.inputs[0] = argv[optind];
+		subset.inputs[0] = argv[optind];
 		code = subset_run(&subset, argv + optind + 1, argc - optind - 1);
 	}
 	free(subset.inputs);
-	free(subset.index);
+	selection_close(&subset.selection);
 	scene_words_free(&subset.words);
 	return code;
 }

@@ -23,31 +23,43 @@ enum figure {
 };
 
 static const struct {
-	const char *key;
-	int width, digits; /* the blank before it counts */
+	const char *key, *head[2]; /* two lines */
+	int width, digits;         /* with the blank before it */
 	bool low_is_bad;
 } FIGURES[FIGURE_COUNT] = {
-	{"psnr8_key", 7, 2, true},
-	{"psnr_key", 7, 2, true},
-	{"delta_itp_key", 8, 4, false},
-	{"psnr8_env", 7, 2, true},
-	{"psnr_env", 7, 2, true},
-	{"delta_itp_env", 8, 4, false},
-	{"psnr8_point", 7, 2, true},
-	{"psnr_point", 7, 2, true},
-	{"delta_itp_point", 8, 4, false},
-	{"log_rmse", 8, 5, false},
-	{"seen_log_rmse", 8, 5, false},
-	{"cube_root_rmse", 10, 6, false},
-	{"largest_relative", 10, 4, false},
-	{"albedo_measured", 9, 4, false},
-	{"albedo", 9, 4, false},
-	{"bytes", 9, 0, false},
+	{"psnr8_key", {"PSNR", "8-bit"}, 7, 2, true},
+	{"psnr_key", {" key   ", "float"}, 7, 2, true},
+	{"delta_itp_key", {"dE ITP", "mean"}, 8, 4, false},
+	{"psnr8_env", {"PSNR", "8-bit"}, 7, 2, true},
+	{"psnr_env", {" env   ", "float"}, 7, 2, true},
+	{"delta_itp_env", {"dE ITP", "mean"}, 8, 4, false},
+	{"psnr8_point", {"PSNR", "8-bit"}, 7, 2, true},
+	{"psnr_point", {" point ", "float"}, 7, 2, true},
+	{"delta_itp_point", {"dE ITP", "mean"}, 8, 4, false},
+	{"log_rmse", {"", "all"}, 8, 5, false},
+	{"seen_log_rmse", {"log RMSE", "seen"}, 8, 5, false},
+	{"cube_root_rmse", {"cube-root", "RMSE"}, 10, 6, false},
+	{"largest_relative", {"  largest relative error, at    ", "     value theta_h theta_d phi_d"}, 10, 4, false},
+	{"albedo_measured", {"", "measured"}, 9, 4, false},
+	{"albedo", {"albedo", "decoded"}, 9, 4, false},
+	{"bytes", {"record", "bytes"}, 9, 0, false},
 };
 
+/*
+ * The table has two blocks of at most 76 columns beside the names, so that a terminal of 100 holds it: spheres and bytes as the
+ * materials are measured, errors and albedos after them.
+ */
+enum block { BLOCK_SPHERES, BLOCK_ERRORS };
+
+/* Whether its lighting is one of those that were asked for. */
 static bool figure_shown(const struct compare_report *report, int figure)
 {
 	return figure >= FIGURE_LOG || (report->lightings >> (figure / FIGURES_PER_SPHERE) & 1);
+}
+
+static bool figure_is_of(const struct compare_report *report, enum block block, int figure)
+{
+	return figure_shown(report, figure) && (block == BLOCK_SPHERES) == (figure < FIGURE_LOG || figure == FIGURE_BYTES);
 }
 
 static void figures_of(const struct compare_item *item, double values[FIGURE_COUNT])
@@ -68,30 +80,15 @@ static void figures_of(const struct compare_item *item, double values[FIGURE_COU
 	values[FIGURE_BYTES] = item->result.record_bytes;
 }
 
-/*
- * The table has two blocks of at most 76 columns beside the names, so that a terminal of 100 holds it: spheres and bytes as the
- * materials are measured, errors and albedos after them.
- */
-enum block { BLOCK_SPHERES, BLOCK_ERRORS, BLOCKS };
-
-static bool figure_is_of(enum block block, int figure)
-{
-	return (block == BLOCK_SPHERES) == (figure < FIGURE_LOG || figure == FIGURE_BYTES);
-}
-
 static void block_head(const struct compare_report *report, enum block block)
 {
-	printf("%-*s", report->name_width, "");
-	for (int l = 0; l < LIGHTING_COUNT && block == BLOCK_SPHERES; l++)
-		if (report->lightings >> l & 1)
-			printf("   PSNR %-6s  dE ITP", lighting_name((enum lighting)l));
-	printf("%s\n%-*s", block == BLOCK_ERRORS ? "        log RMSE cube-root  largest relative error, at            albedo" : "",
-	       report->name_width, "material");
-	for (int l = 0; l < LIGHTING_COUNT && block == BLOCK_SPHERES; l++)
-		if (report->lightings >> l & 1)
-			printf("  8-bit  float    mean");
-	printf("%s\n",
-	       block == BLOCK_ERRORS ? "     all    seen      RMSE     value theta_h theta_d phi_d measured  decoded" : "    bytes");
+	for (int line = 0; line < 2; line++) {
+		printf("%-*s", report->name_width, line ? "material" : "");
+		for (int f = 0; f < FIGURE_COUNT; f++)
+			if (figure_is_of(report, block, f))
+				printf("%*s", FIGURES[f].width, FIGURES[f].head[line]);
+		putchar('\n');
+	}
 }
 
 void compare_report_head(const struct compare_report *report)
@@ -105,7 +102,7 @@ static void text_row(const struct compare_report *report, enum block block, cons
 {
 	text_print(name, report->name_width);
 	for (int f = 0; f < FIGURE_COUNT; f++) {
-		if (!figure_shown(report, f) || !figure_is_of(block, f))
+		if (!figure_is_of(report, block, f))
 			continue;
 		if (f == FIGURE_RELATIVE) /* of any magnitude */
 			printf("%*.4g", FIGURES[f].width, values[f]);
@@ -190,6 +187,12 @@ static void summary_json(const struct compare_report *report, double rows[SUMMAR
 	json_finish(&json);
 }
 
+static void summary_rows(const struct compare_report *report, enum block block, double rows[SUMMARY_ROWS][FIGURE_COUNT])
+{
+	for (int r = 0; r < SUMMARY_ROWS; r++)
+		text_row(report, block, SUMMARY_NAMES[r], rows[r], NULL);
+}
+
 bp_status compare_report_summary(const struct compare_report *report, const struct compare_item *items, size_t count,
                                  size_t failed_count, bp_error *error)
 {
@@ -218,22 +221,20 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 		summary_json(report, rows, used, confirmed, failed_count);
 		return BP_OK;
 	}
-	for (int block = BLOCK_SPHERES; used && block < BLOCKS; block++) {
-		if (block == BLOCK_ERRORS) {
-			putchar('\n');
-			block_head(report, BLOCK_ERRORS);
+	if (!used)
+		return BP_OK;
+	summary_rows(report, BLOCK_SPHERES, rows);
+	putchar('\n');
+	block_head(report, BLOCK_ERRORS);
+	for (size_t n = 0; n < count; n++)
+		if (items[n].done && !items[n].error.status) {
+			figures_of(&items[n], values);
+			text_row(report, BLOCK_ERRORS, items[n].name, values, &items[n].result.comparison.worst);
 		}
-		for (size_t n = 0; block == BLOCK_ERRORS && n < count; n++)
-			if (items[n].done && !items[n].error.status) {
-				figures_of(&items[n], values);
-				text_row(report, BLOCK_ERRORS, items[n].name, values, &items[n].result.comparison.worst);
-			}
-		for (int r = 0; r < SUMMARY_ROWS; r++)
-			text_row(report, (enum block)block, SUMMARY_NAMES[r], rows[r], NULL);
-	}
-	if (used && confirmed == count)
+	summary_rows(report, BLOCK_ERRORS, rows);
+	if (confirmed == count)
 		printf("The errors that the records tell of their layers are confirmed.\n");
-	else if (used)
+	else
 		printf("The errors that the records tell of their layers are confirmed for %zu of %zu materials; "
 		       "the others were packed from other files, or failed.\n",
 		       confirmed, count);

@@ -6,27 +6,6 @@
 
 #include "error.h"
 
-/* Head, figures and PNG files in one malloc'ed block. */
-static bp_status result_pack(const struct compare_result *result, uint8_t *const png[LIGHTING_COUNT], uint8_t **out,
-                             size_t *out_bytes, bp_error *error)
-{
-	size_t bytes = sizeof *result, at = sizeof *result;
-	for (int l = 0; l < LIGHTING_COUNT; l++)
-		bytes += result->png_bytes[l];
-	uint8_t *block = malloc(bytes);
-	if (!block)
-		return error_memory(error, bytes);
-	memcpy(block, result, sizeof *result);
-	for (int l = 0; l < LIGHTING_COUNT; l++)
-		if (result->png_bytes[l]) {
-			memcpy(block + at, png[l], result->png_bytes[l]);
-			at += result->png_bytes[l];
-		}
-	*out = block;
-	*out_bytes = bytes;
-	return BP_OK;
-}
-
 static bp_status decoded_load(const struct compare_job *job, const struct measured_item *item, const struct record_head *head,
                               uint32_t layers, struct expansion *table, bp_error *error)
 {
@@ -100,8 +79,13 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 		}
 	if (status == BP_OK && result.confirmed)
 		status = layers_confirm(compare, item, &head, &lattice, &result.comparison.fidelity, &table, error);
-	if (status == BP_OK)
-		status = result_pack(&result, png, record, record_bytes, error);
+	if (status == BP_OK) {
+		struct byte_buffer whole = {0};
+		write_bytes(&whole, &result, sizeof result);
+		for (int l = 0; l < LIGHTING_COUNT; l++)
+			write_bytes(&whole, png[l], result.png_bytes[l]);
+		status = workers_deliver(&whole, record, record_bytes, error);
+	}
 out:
 	for (int l = 0; l < LIGHTING_COUNT; l++) {
 		picture_free(&pictures[l]);

@@ -131,7 +131,7 @@ static void worst_write(FILE *out, const struct page *page, const struct page_ou
 		fprintf(out, "%s<td>%u<td>%.5f<td>%.3f", page->details ? "</a>" : "", outcome->result.record_bytes, last_error(outcome),
 		        outcome->result.albedo);
 		for (int l = 0; compared && l < LIGHTING_COUNT; l++)
-			if (outcome->result.compared[l])
+			if (page->options->lightings >> l & 1 && outcome->result.measured)
 				fprintf(out, "<td>%.2f", outcome->result.psnr[l]);
 			else if (page->options->lightings >> l & 1)
 				fputs("<td>not compared", out);

@@ -317,7 +317,7 @@ static bp_status details_write(FILE *out, const struct subject *subject, bp_erro
 	return status;
 }
 
-static void result_fill(const struct page_job *job, const struct subject *subject, struct page_result *result)
+static void result_fill(const struct subject *subject, struct page_result *result)
 {
 	result->record_bytes = subject->head.record_bytes;
 	result->layer_count = subject->head.layer_count;
@@ -327,10 +327,8 @@ static void result_fill(const struct page_job *job, const struct subject *subjec
 	}
 	result->albedo = subject->energy.largest;
 	result->measured = subject->measured;
-	for (int l = 0; subject->measured && l < LIGHTING_COUNT; l++) {
-		result->compared[l] = job->plans.plans[l] != NULL;
+	for (int l = 0; subject->measured && l < LIGHTING_COUNT; l++)
 		result->psnr[l] = subject->comparison.psnr[l].real;
-	}
 }
 
 bp_status page_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error)
@@ -350,7 +348,7 @@ bp_status page_work(void *user, const struct job *job, int fd, uint8_t **record,
 		status = subject.item->source ? measured_draw(page, &subject, error) : decoded_draw(page, &subject, error);
 	if (status != BP_OK)
 		goto out;
-	result_fill(page, &subject, &result);
+	result_fill(&subject, &result);
 	write_zeros(&text, sizeof result);
 	out = memory_stream_open(&text);
 	if (!out) {
@@ -364,14 +362,10 @@ bp_status page_work(void *user, const struct job *job, int fd, uint8_t **record,
 		status = details_write(out, &subject, error);
 	fclose(out);
 	result.details_bytes = (uint32_t)(text.count - sizeof result - result.sheet_bytes);
-	if (status == BP_OK && text.failed)
-		status = error_memory(error, text.capacity);
-	if (status == BP_OK) {
+	if (status == BP_OK && !text.failed)
 		memcpy(text.bytes, &result, sizeof result);
-		*record = text.bytes;
-		*record_bytes = text.count;
-		text = (struct byte_buffer){0};
-	}
+	if (status == BP_OK)
+		status = workers_deliver(&text, record, record_bytes, error);
 out:
 	byte_buffer_free(&text);
 	subject_free(&subject);

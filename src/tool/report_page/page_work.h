@@ -15,8 +15,7 @@ struct page_result {
 	double layer_error[LAYERS_MAX]; /* log RMSE of what can be seen */
 	double albedo;                  /* the largest directional one */
 	bool measured;                  /* compared with its file */
-	bool compared[LIGHTING_COUNT];
-	double psnr[LIGHTING_COUNT]; /* float, where compared */
+	double psnr[LIGHTING_COUNT];    /* float, where measured, of the lightings that were asked for */
 	uint32_t sheet_bytes, details_bytes;
 };
 
