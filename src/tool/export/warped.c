@@ -12,6 +12,8 @@ enum { PROFILE_ANGLES = 16 };
 static const double COSINE_LEAST = 1e-4;
 /* A value beyond the horizon goes on by at most so many times the one before it. */
 static const double BEYOND_MOST = 2;
+/* Beyond the horizon samples are below 0 by this at least, by which they are told from those above it. */
+static const double BEYOND_LEAST = 1e-30;
 /* Readers divide by a slice's sum: one that is darker all over is sampled evenly. */
 static const double LUMINANCE_LEAST = 1e-20;
 /* Of a slice's mean: no place is darker. Readers' floats make of a 0 a density of some -1e-9, and weights of millions. */
@@ -72,8 +74,8 @@ static void nodes_place(const struct warped *warped, uint32_t angle, struct pair
 }
 
 /*
- * Where w_o is below the horizon, but a neighbour is not: the straight continuation of the two values before it, below 0. Readers
- * interpolate across the horizon, and with a 0 here f cos theta_o would be too large just above it.
+ * Where w_o is below the horizon: below 0; beside a node that is not, the straight continuation of the two values before it.
+ * Readers interpolate across the horizon, and with a 0 here f cos theta_o would be too large just above it.
  */
 static void horizon_cross(uint32_t size, const double *factor, float *plane)
 {
@@ -93,8 +95,7 @@ static void horizon_cross(uint32_t size, const double *factor, float *plane)
 				sum += fmax(fmin(2 * (double)plane[near] - plane[far], 0), -BEYOND_MOST * plane[near]);
 				count++;
 			}
-			if (count > 0)
-				plane[y * n + x] = (float)(sum / count);
+			plane[y * n + x] = (float)fmin(count > 0 ? sum / count : 0, -BEYOND_LEAST);
 		}
 }
 

@@ -29,7 +29,7 @@ struct warped {
 	struct warp visible; /* [angles]: densities of mass 1 over the unit square */
 	float *theta_i;      /* [angles], radians */
 	float *luminance;    /* [angles][size][size]: the mean of rgb, but not below 1e-4 of its slice's mean; 1 in a black slice */
-	float *rgb;          /* [angles][3][size][size]; below 0 beyond the horizon, so that f cos theta_o passes through 0 on it */
+	float *rgb; /* [angles][3][size][size]; below 0 beyond the horizon alone, so that f cos theta_o passes through 0 on it */
 };
 
 /*

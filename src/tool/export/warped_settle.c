@@ -91,15 +91,20 @@ static void probe_add(const struct warped *warped, uint32_t angle, size_t n, str
 		}
 }
 
-/* A slice takes the means of its sums. */
+/*
+ * A slice takes the means of its sums. Samples above the horizon stay at 0 or above: not all readers cut f there, and light below
+ * 0 is worse than a mean that is too bright.
+ */
 static void slice_settle(struct warped *warped, uint32_t angle, const double *sum)
 {
 	const size_t points = (size_t)warped->shape.size * warped->shape.size;
 	for (size_t c = 0; c < 3; c++) {
 		float *plane = warped->rgb + (angle * 3 + c) * points;
-		for (size_t n = 0; n < points; n++)
+		for (size_t n = 0; n < points; n++) {
+			const double least = plane[n] < 0 ? -FLT_MAX : 0;
 			if (sum[3 * points + n] > 0)
-				plane[n] = (float)fmax(fmin(plane[n] + sum[c * points + n] / sum[3 * points + n], FLT_MAX), -FLT_MAX);
+				plane[n] = (float)fmax(fmin(plane[n] + sum[c * points + n] / sum[3 * points + n], FLT_MAX), least);
+		}
 	}
 }
 
