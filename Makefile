@@ -36,10 +36,10 @@ TOOL_ONLY    := $(addprefix src/merl/,source.c source_kind.c source_names.c sour
 LIBRARY_C    := $(filter-out $(TOOL_ONLY),$(wildcard src/*.c src/rgl/*.c src/merl/*.c src/model/*.c src/model/*/*.c src/codec/*.c src/codec/*/*.c src/archive/*.c))
 TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard src/tool/*.c src/tool/*/*.c)
 # Measured files of every format, read and written: for who packs.
-MEASURED_C   := $(wildcard src/rgl/*.c) $(addprefix src/merl/,merl_file.c carried.c foreign.c holes.c input.c reciprocity.c rgl_file.c rgl_lattice.c two_halves.c)
+MEASURED_C   := $(wildcard src/rgl/*.c) $(addprefix src/merl/,merl_file.c carried.c foreign.c holes.c input.c origin.c rgl_file.c rgl_lattice.c two_halves.c)
 # The half that only reads: what is left of these sources when the linker drops what no function of it calls.
 WRITER_C     := $(addprefix src/,output_file.c output_file_sweep.c output_path.c) $(MEASURED_C) \
-	$(addprefix src/codec/record_,carried.c copy.c measure.c encode.c head_write.c) \
+	$(addprefix src/codec/record_,carried.c copy.c encode.c head_write.c) \
 	$(addprefix src/archive/,gather.c index_write.c merge.c pack.c recover.c writer.c)
 READER_C     := $(filter-out $(WRITER_C) $(wildcard src/model/fidelity*.c),$(LIBRARY_C))
 READER_CALLS := $(addprefix bp_,version version_text status_text free table_bytes $(addprefix archive_,open open_memory open_source close \

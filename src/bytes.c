@@ -35,14 +35,22 @@ void read_bytes(struct byte_reader *reader, void *out, size_t count)
 		memset(out, 0, count);
 }
 
+static uint64_t little_endian(const uint8_t *at, unsigned count)
+{
+	uint64_t value = 0;
+	while (count-- > 0)
+		value = value << 8 | at[count];
+	return value;
+}
+
+uint16_t load_u16(const uint8_t *at) { return (uint16_t)little_endian(at, 2); }
+uint32_t load_u32(const uint8_t *at) { return (uint32_t)little_endian(at, 4); }
+uint64_t load_u64(const uint8_t *at) { return little_endian(at, 8); }
+
 static uint64_t read_little_endian(struct byte_reader *reader, unsigned count)
 {
 	const uint8_t *span = read_span(reader, count);
-	uint64_t value = 0;
-	if (span)
-		for (unsigned i = count; i-- > 0;)
-			value = value << 8 | span[i];
-	return value;
+	return span ? little_endian(span, count) : 0;
 }
 
 uint8_t read_u8(struct byte_reader *reader) { return (uint8_t)read_little_endian(reader, 1); }
@@ -68,25 +76,19 @@ double read_f64(struct byte_reader *reader)
 
 static uint8_t *buffer_extend(struct byte_buffer *buffer, size_t count)
 {
+	if (!buffer->failed && count > buffer->capacity - buffer->count) {
+		size_t capacity = buffer->capacity ? buffer->capacity : 256;
+		while (capacity - buffer->count < count && capacity <= SIZE_MAX / 2)
+			capacity *= 2;
+		uint8_t *grown = capacity - buffer->count < count ? NULL : realloc(buffer->bytes, capacity);
+		if (grown) {
+			buffer->bytes = grown;
+			buffer->capacity = capacity;
+		}
+		buffer->failed = !grown;
+	}
 	if (buffer->failed)
 		return NULL;
-	if (count > buffer->capacity - buffer->count) {
-		size_t capacity = buffer->capacity ? buffer->capacity : 256;
-		while (capacity - buffer->count < count) {
-			if (capacity > SIZE_MAX / 2) {
-				buffer->failed = true;
-				return NULL;
-			}
-			capacity *= 2;
-		}
-		uint8_t *grown = realloc(buffer->bytes, capacity);
-		if (!grown) {
-			buffer->failed = true;
-			return NULL;
-		}
-		buffer->bytes = grown;
-		buffer->capacity = capacity;
-	}
 	buffer->count += count;
 	return buffer->bytes + buffer->count - count;
 }
@@ -164,12 +166,3 @@ void store_u32(uint8_t *at, uint32_t value)
 	for (unsigned i = 0; i < 4; i++)
 		at[i] = (uint8_t)(value >> 8 * i);
 }
-
-uint16_t load_u16(const uint8_t *at) { return (uint16_t)(at[0] | at[1] << 8); }
-
-uint32_t load_u32(const uint8_t *at)
-{
-	return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
-}
-
-uint64_t load_u64(const uint8_t *at) { return load_u32(at) | (uint64_t)load_u32(at + 4) << 32; }

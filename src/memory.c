@@ -27,11 +27,7 @@ static void *alloc_aligned(size_t bytes, size_t alignment)
 	return block;
 }
 
-void *memory_alloc(size_t bytes)
-{
-	const size_t alignment = alignment_for(bytes);
-	return alloc_aligned(alignment == HUGE_PAGE ? (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE : bytes, alignment);
-}
+void *memory_alloc(size_t bytes) { return alloc_aligned(bytes, CACHE_LINE); }
 
 void *memory_alloc_kept(size_t bytes)
 {

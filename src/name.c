@@ -46,6 +46,12 @@ const char *name_fault(const char *name, size_t count)
 	return NULL;
 }
 
+const char *name_in_path(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
 bool name_text(const char *name)
 {
 	uint32_t code;

@@ -21,6 +21,9 @@ const char *name_fault(const char *name, size_t count);
  */
 size_t name_character(const uint8_t *s, size_t left, uint32_t *code);
 
+/* The last part of a path, in place. */
+const char *name_in_path(const char *path);
+
 /* Whether the bytes are UTF-8, whatever the characters. */
 bool name_text(const char *name);
 

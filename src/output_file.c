@@ -213,13 +213,6 @@ static bp_status name_give(struct output_file *out, bp_error *error)
 /* Takes no other file's place, not even one that has just appeared: a link fails there, where rename would not. */
 static bp_status place_new(struct output_file *out, bp_error *error)
 {
-	if (!out->temporary && take_by_linking(out, out->target, 0) == 0)
-		return BP_OK;
-	if (!out->temporary && errno == EEXIST)
-		return refuse_taken(out->target, error);
-	bp_status status = out->temporary ? BP_OK : name_give(out, error);
-	if (status)
-		return status;
 	int failed = link(out->temporary, out->target);
 	if (!failed)
 		unlink(out->temporary);
@@ -227,27 +220,30 @@ static bp_status place_new(struct output_file *out, bp_error *error)
 		failed = rename(out->temporary, out->target);
 	if (failed)
 		return errno == EEXIST ? refuse_taken(out->target, error) : refuse(out->target, "create", error);
-	free(out->temporary);
-	out->temporary = NULL;
 	return BP_OK;
 }
 
 static bp_status place_over(struct output_file *out, bp_error *error)
 {
-	bp_status status = out->temporary ? BP_OK : name_give(out, error);
-	if (status)
-		return status;
 	likeness_keep(out);
-	if (rename(out->temporary, out->target) != 0)
-		return refuse(out->target, "replace", error);
-	free(out->temporary);
-	out->temporary = NULL;
-	return BP_OK;
+	return rename(out->temporary, out->target) == 0 ? BP_OK : refuse(out->target, "replace", error);
 }
 
 static bp_status place(struct output_file *out, bp_error *error)
 {
-	return out->rule == OUTPUT_NEW ? place_new(out, error) : place_over(out, error);
+	const bool is_new = out->rule == OUTPUT_NEW;
+	if (is_new && !out->temporary && take_by_linking(out, out->target, 0) == 0)
+		return BP_OK;
+	if (is_new && !out->temporary && errno == EEXIST)
+		return refuse_taken(out->target, error);
+	bp_status status = out->temporary ? BP_OK : name_give(out, error);
+	if (!status)
+		status = is_new ? place_new(out, error) : place_over(out, error);
+	if (!status) {
+		free(out->temporary);
+		out->temporary = NULL;
+	}
+	return status;
 }
 
 bp_status output_file_commit(struct output_file *out, bp_error *error)

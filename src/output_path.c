@@ -9,17 +9,11 @@
 
 #include "bytes.h"
 #include "error.h"
-
-/* The folder's length in a path, the last slash included; 0: the current folder. */
-static size_t folder_bytes(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return slash ? (size_t)(slash - path) + 1 : 0;
-}
+#include "name.h"
 
 char *output_path_beside(const char *target, const char *name)
 {
-	const size_t folder = folder_bytes(target), bytes = folder + strlen(name) + 1;
+	const size_t folder = (size_t)(name_in_path(target) - target), bytes = folder + strlen(name) + 1;
 	char *path = malloc(bytes);
 	if (path) {
 		memcpy(path, target, folder);
@@ -28,7 +22,7 @@ char *output_path_beside(const char *target, const char *name)
 	return path;
 }
 
-char *output_path_folder(const char *target) { return output_path_beside(target, folder_bytes(target) ? "" : "."); }
+char *output_path_folder(const char *target) { return output_path_beside(target, name_in_path(target) > target ? "" : "."); }
 
 bp_status output_path_resolve(const char *path, char **out, bool *found, struct stat *about, bp_error *error)
 {
@@ -46,28 +40,28 @@ bp_status output_path_resolve(const char *path, char **out, bool *found, struct 
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: a link that leads to nothing: %s", path, strerror(errno));
 	if (!target)
 		return error_memory(error, strlen(path) + 1);
-	if (link && stat(target, about) != 0) {
+	bp_status status = BP_OK;
+	if (link && stat(target, about) != 0)
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot follow the link: %s", path, strerror(errno));
+	else if (*found && !S_ISREG(about->st_mode))
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: is %s, not a regular file", path,
+		                   S_ISDIR(about->st_mode) ? "a folder" : "a special file");
+	if (status)
 		free(target);
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot follow the link: %s", path, strerror(errno));
-	}
-	if (*found && !S_ISREG(about->st_mode)) {
-		free(target);
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: is %s, not a regular file", path,
-		                 S_ISDIR(about->st_mode) ? "a folder" : "a special file");
-	}
-	*out = target;
-	return BP_OK;
+	else
+		*out = target;
+	return status;
 }
 
 #define UNFINISHED ".brdfpack-"
 
 void output_path_stem(const char *target, char stem[OUTPUT_STEM_BYTES])
 {
-	const char *name = target + folder_bytes(target);
+	const char *name = name_in_path(target);
 	snprintf(stem, OUTPUT_STEM_BYTES, UNFINISHED "%08x-", bytes_crc32(name, strlen(name)));
 }
 
-bool output_path_unfinished(const char *path) { return !strncmp(path + folder_bytes(path), UNFINISHED, sizeof UNFINISHED - 1); }
+bool output_path_unfinished(const char *path) { return !strncmp(name_in_path(path), UNFINISHED, sizeof UNFINISHED - 1); }
 
 int output_path_lock(int fd)
 {

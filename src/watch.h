@@ -4,7 +4,7 @@
 #ifndef WATCH_H
 #define WATCH_H
 
-#include "brdfpack.h"
+#include "error.h"
 
 struct watch {
 	bp_progress_fn *tell; /* not NULL */
@@ -12,6 +12,11 @@ struct watch {
 };
 
 /* Tells `share` of the work, 0 to 1: BP_OK to go on, or BP_ERROR_CANCELLED. NULL: nobody watches. */
-bp_status watch_tell(const struct watch *watch, double share, bp_error *error);
+static inline bp_status watch_tell(const struct watch *watch, double share, bp_error *error)
+{
+	if (!watch || watch->tell(watch->user, share) == 0)
+		return BP_OK;
+	return error_set(error, BP_ERROR_CANCELLED, BP_NO_OFFSET, "cancelled by the caller");
+}
 
 #endif

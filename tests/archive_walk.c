@@ -108,9 +108,9 @@ static uint32_t material_extract(const bp_archive *archive, uint64_t m)
 	    expansion_alloc(model->dims, &table, NULL) != BP_OK)
 		goto out;
 	below = malloc(lattice_cells(model->dims));
-	if (!below || lattice_below_horizon(model->dims, model->horizon_limit, below, NULL) != BP_OK ||
-	    model_expand(model, 0, &table, NULL) != BP_OK)
+	if (!below || model_expand(model, 0, &table, NULL) != BP_OK)
 		goto out;
+	lattice_below_horizon(model->dims, model->horizon_limit, below);
 	if (lattice_write_path(path, OUTPUT_REPLACE, &table, below, record, head.record_bytes, NULL) == BP_OK) {
 		crc = file_crc32(path);
 		unlink(path);

@@ -32,16 +32,16 @@ static void items_read(const struct source_list *list)
 	source_cursor_close(&cursor);
 }
 
-static void stream_read(struct source_list *list, const char *path)
+static void stream_read(struct source_list *list, size_t number)
 {
 	struct container *stream;
 	struct source_item item = {0};
 	struct lattice lattice;
-	if (container_open(path, CONTAINER_SEQUENTIAL, NULL, &stream, NULL) != BP_OK)
+	if (container_open(list->streams[number].path, CONTAINER_SEQUENTIAL, NULL, &stream, NULL) != BP_OK)
 		return;
 	for (int n = 0; n < MEMBERS_MAX; n++) {
 		bool more = false;
-		const bp_status status = source_stream_next(list, path, stream, &item, &more, NULL);
+		const bp_status status = source_stream_next(list, number, stream, &item, &more, NULL);
 		if (status == BP_OK && !more)
 			break;
 		if (status == BP_OK) {
@@ -64,7 +64,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 		return 0;
 	items_read(&list);
 	for (size_t n = 0; n < list.stream_count; n++)
-		stream_read(&list, list.streams[n]);
+		stream_read(&list, n);
 	source_list_free(&list);
 	return 0;
 }

@@ -52,8 +52,9 @@ static bool lattice_extracted(const struct record_head *head, const uint8_t *rec
 	uint8_t *below = malloc(cells);
 	bool made = record_decode_whole(head, 0, record, &model, NULL) == BP_OK &&
 	            expansion_alloc(head->dims, &table, NULL) == BP_OK && model_expand(model, 0, &table, NULL) == BP_OK &&
-	            lattice_below_horizon(head->dims, head->horizon_limit, below, NULL) == BP_OK &&
 	            lattice_alloc(head->dims, out, NULL) == BP_OK;
+	if (made)
+		lattice_below_horizon(head->dims, head->horizon_limit, below);
 	for (int c = 0; made && c < 3; c++) {
 		for (size_t i = 0; i < cells; i++) {
 			const double value = table.unit * (double)table.rgb[c][i] / MERL_SCALE[c];

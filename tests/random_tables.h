@@ -61,7 +61,7 @@ __attribute__((unused)) static float *table_of(struct lattice_dims d, float limi
 	free(terms);
 	free(piece);
 	spectrum_rows_free(t);
-	spectrum_inverse_free(inverse);
+	free(inverse);
 	return table;
 }
 

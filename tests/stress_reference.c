@@ -18,12 +18,11 @@ void reference_fidelity(const struct lattice *truth, const struct expansion *tab
 	const struct lattice_dims d = truth->dims;
 	long double log_squares = 0, cube_squares = 0, largest = 0;
 	float *cosine_slice = malloc((size_t)d.theta_d * d.phi_d * sizeof *cosine_slice);
-	struct corner_cosines *cosines;
 
-	if (!cosine_slice || corner_cosines_create(d, &cosines, NULL) != BP_OK)
+	if (!cosine_slice)
 		abort();
 	for (uint32_t i = 0; i < d.theta_h; i++) {
-		corner_cosines_slice(cosines, i, cosine_slice);
+		lattice_corner_cosines(d, i, cosine_slice);
 		for (uint32_t j = 0; j < d.theta_d; j++)
 			for (uint32_t k = 0; k < d.phi_d; k++) {
 				const size_t n = lattice_index(d, i, j, k);
@@ -42,7 +41,6 @@ void reference_fidelity(const struct lattice *truth, const struct expansion *tab
 	out->cube_root_rmse = (double)sqrtl(cube_squares / count);
 	out->largest_relative = (double)largest;
 	free(cosine_slice);
-	free(cosines);
 }
 
 /* ---- marginals ---- */
@@ -109,8 +107,8 @@ double reference_marginals(const struct lattice *lattice)
 		worst = fmax(worst, fabs((double)(log2l(found.d[j]) - f[1][j])));
 	for (uint32_t k = 0; k < d.phi_d; k++)
 		worst = fmax(worst, fabs((double)(log2l(found.phi[k]) - f[2][k])));
-	marginals_free(&found);
-	importance_free(importance);
+	free(found.h);
+	free(importance);
 	free(value);
 	return worst;
 }

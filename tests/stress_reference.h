@@ -7,7 +7,7 @@
 #include "model/fidelity.h"
 
 /*
- * The figures of fidelity.h by log10l, cbrtl and long double sums. The cosines are corner_cosines_slice's, rounded to
+ * The figures of fidelity.h by log10l, cbrtl and long double sums. The cosines are lattice_corner_cosines', rounded to
  * single precision: from exact cosines the cube root figure would differ by up to 2e-8.
  */
 void reference_fidelity(const struct lattice *truth, const struct expansion *table, struct fidelity *out);

@@ -41,63 +41,59 @@ static int remove_folder(void **unused)
 	return scratch_remove(folder);
 }
 
-static void check_names(const struct inputs *inputs, const char *expected)
-{
-	char found[64] = "", name[32];
+static bool find(const char *list, struct source_list *out) { return inputs_find((char *[]){folder}, 1, list, out); }
 
-	for (int n = 0; n < inputs->count; n++) {
-		inputs_name(inputs->paths[n], name, sizeof name);
-		strcat(found, name);
-	}
+static void check_names(const struct source_list *inputs, const char *expected)
+{
+	char found[64] = "";
+
+	for (size_t n = 0; n < inputs->item_count; n++)
+		strcat(found, inputs->items[n].name);
 	assert_string_equal(found, expected);
 }
 
 static void a_folder_gives_its_merl_files_in_order(void **unused)
 {
-	struct inputs inputs = {.count = 0};
+	struct source_list inputs;
 	(void)unused;
 
-	assert_true(inputs_add(&inputs, folder));
-	inputs_sort(&inputs);
+	assert_true(find(NULL, &inputs));
 	check_names(&inputs, "abcde");
-	inputs_free(&inputs);
+	source_list_free(&inputs);
 }
 
 static void a_list_keeps_what_it_names(void **unused)
 {
-	struct inputs inputs = {.count = 0};
+	struct source_list inputs;
 	(void)unused;
 
-	assert_true(inputs_add(&inputs, folder));
-	inputs_sort(&inputs);
-	assert_true(inputs_keep_listed(&inputs, scratch_in(folder, "list")));
+	assert_true(find(scratch_in(folder, "list"), &inputs));
 	check_names(&inputs, "bd");
-	inputs_free(&inputs);
+	source_list_free(&inputs);
 }
 
 static void the_quick_selection_spreads_over_the_list(void **unused)
 {
-	struct inputs inputs = {.count = 0};
+	struct source_list inputs;
 	(void)unused;
 
-	assert_true(inputs_add(&inputs, folder));
-	inputs_sort(&inputs);
+	assert_true(find(NULL, &inputs));
 	inputs_thin(&inputs, 9);
 	check_names(&inputs, "abcde");
 	inputs_thin(&inputs, 3);
 	check_names(&inputs, "ace");
 	inputs_thin(&inputs, 1);
 	check_names(&inputs, "a");
-	inputs_free(&inputs);
+	source_list_free(&inputs);
 }
 
 static void what_is_not_there_is_refused(void **unused)
 {
-	struct inputs inputs = {.count = 0};
+	struct source_list inputs;
 	(void)unused;
 
-	assert_false(inputs_add(&inputs, "/nonexistent/folder"));
-	assert_false(inputs_keep_listed(&inputs, "/nonexistent/list"));
+	assert_false(inputs_find((char *[]){(char[]){"/nonexistent/folder"}}, 1, NULL, &inputs));
+	assert_false(find("/nonexistent/list", &inputs));
 }
 
 int main(void)

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "model/table/compact_row.h"
+#include "model/table/compact.h"
 #include "model/math/fast_math.h"
 #include "model/math/kernels.h"
 

@@ -69,7 +69,7 @@ static void tables_hold_the_expansion_in_every_layout(void **state)
 		assert_int_equal(archive_model_load(held.archive, 0, 0, &model, NULL), BP_OK);
 		assert_int_equal(expansion_alloc(DIMS, &expected, NULL), BP_OK);
 		assert_int_equal(model_expand(model, 0, &expected, NULL), BP_OK);
-		assert_int_equal(lattice_below_horizon(DIMS, model->horizon_limit, below, NULL), BP_OK);
+		lattice_below_horizon(DIMS, model->horizon_limit, below);
 		for (int kind = 0; kind < 12; kind++) {
 			const bp_table_options options = {.struct_bytes = sizeof options,
 			                                  .number = (bp_number)(kind % 3),

@@ -52,12 +52,10 @@ static void assert_defined(const struct pair *p, long double tolerance)
 	const struct lattice_dims d = p->truth.dims;
 	long double logs = 0, cubes = 0, largest = 0, n = 0;
 	float *cosine = malloc((size_t)d.theta_d * d.phi_d * sizeof *cosine);
-	struct corner_cosines *cosines;
 	struct fidelity f;
 
-	assert_int_equal(corner_cosines_create(d, &cosines, NULL), BP_OK);
 	for (uint32_t h = 0; h < d.theta_h; h++) {
-		corner_cosines_slice(cosines, h, cosine);
+		lattice_corner_cosines(d, h, cosine);
 		for (size_t k = 0; k < (size_t)d.theta_d * d.phi_d; k++) {
 			const size_t i = h * (size_t)d.theta_d * d.phi_d + k;
 			for (int c = 0; c < 3 && p->truth.valid[i]; c++) {
@@ -70,11 +68,10 @@ static void assert_defined(const struct pair *p, long double tolerance)
 			}
 		}
 	}
-	assert_int_equal(fidelity_measure(&p->truth, &p->table, &f, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(&p->truth, &p->table, 1, &f, NULL), BP_OK);
 	assert_near(f.log_rmse, sqrtl(logs / n), tolerance);
 	assert_near(f.cube_root_rmse, sqrtl(cubes / n), tolerance);
 	assert_near(f.largest_relative, largest, tolerance);
-	free(cosines);
 	free(cosine);
 }
 
@@ -144,13 +141,13 @@ static void many_tables_are_measured_as_one_by_one(void **user)
 	for (int t = 0; t < LAYERS_MAX; t++)
 		tables[t] = p[t % 3].table;
 	for (uint32_t count = 1; count <= LAYERS_MAX; count++) {
-		assert_int_equal(fidelity_measure_all(&p[1].truth, tables, count, all, NULL), BP_OK);
+		assert_int_equal(fidelity_measure(&p[1].truth, tables, count, all, NULL), BP_OK);
 		for (uint32_t t = 0; t < count; t++) {
-			assert_int_equal(fidelity_measure(&p[1].truth, &tables[t], &one, NULL), BP_OK);
+			assert_int_equal(fidelity_measure(&p[1].truth, &tables[t], 1, &one, NULL), BP_OK);
 			assert_memory_equal(&one, &all[t], sizeof one);
 		}
 	}
-	assert_int_equal(fidelity_measure_all(&p[1].truth, tables, LAYERS_MAX + 1, all, NULL), BP_ERROR_ARGUMENT);
+	assert_int_equal(fidelity_measure(&p[1].truth, tables, LAYERS_MAX + 1, all, NULL), BP_ERROR_ARGUMENT);
 	for (int t = 0; t < 3; t++)
 		pair_free(&p[t]);
 }
@@ -164,7 +161,7 @@ static void equal_tables_have_no_error(void **user)
 	for (int c = 0; c < 3; c++)
 		for (size_t i = 0; i < 216; i++)
 			p.truth.rgb[c][i] = (double)(p.table.rgb[c][i] = 0.25f + (float)i);
-	assert_int_equal(fidelity_measure(&p.truth, &p.table, &f, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(&p.truth, &p.table, 1, &f, NULL), BP_OK);
 	assert_true(f.log_rmse == 0 && f.cube_root_rmse == 0 && f.largest_relative == 0);
 	pair_free(&p);
 }
@@ -175,12 +172,12 @@ static void what_stands_in_invalid_cells_does_not_count(void **user)
 	struct pair p;
 	struct fidelity f, g;
 	pair_make(&p, (struct lattice_dims){6, 6, 6}, 1, 0.5);
-	assert_int_equal(fidelity_measure(&p.truth, &p.table, &f, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(&p.truth, &p.table, 1, &f, NULL), BP_OK);
 	for (size_t i = 0; i < 216; i++)
 		if (!p.truth.valid[i])
 			for (int c = 0; c < 3; c++)
 				p.table.rgb[c][i] = 1e30f;
-	assert_int_equal(fidelity_measure(&p.truth, &p.table, &g, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(&p.truth, &p.table, 1, &g, NULL), BP_OK);
 	assert_memory_equal(&f, &g, sizeof f);
 	pair_free(&p);
 }
@@ -198,7 +195,7 @@ static void extreme_values_give_finite_figures(void **user)
 				p.truth.rgb[c][i] = sizes[k % 2] * (double)i;
 				p.table.rgb[c][i] = (float)(i % 7);
 			}
-		assert_int_equal(fidelity_measure(&p.truth, &p.table, &f, NULL), BP_OK);
+		assert_int_equal(fidelity_measure(&p.truth, &p.table, 1, &f, NULL), BP_OK);
 		assert_true(isfinite(f.log_rmse) && isfinite(f.cube_root_rmse) && isfinite(f.largest_relative));
 		pair_free(&p);
 	}
@@ -216,7 +213,7 @@ static void an_error_beyond_all_numbers_is_the_largest_one(void **user)
 			p.truth.rgb[c][i] = 0;
 			p.table.rgb[c][i] = (float)(i % 7);
 		}
-	assert_int_equal(fidelity_measure(&p.truth, &p.table, &f, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(&p.truth, &p.table, 1, &f, NULL), BP_OK);
 	assert_true(f.largest_relative == DBL_MAX && isfinite(f.log_rmse));
 	pair_free(&p);
 }
@@ -229,8 +226,8 @@ static void unlike_tables_and_empty_ones_are_refused(void **user)
 	bp_error error;
 	pair_make(&p, (struct lattice_dims){4, 4, 4}, 1, 1);
 	pair_make(&q, (struct lattice_dims){4, 4, 5}, 1, 0);
-	assert_int_equal(fidelity_measure(&p.truth, &p.table, &f, &error), BP_ERROR_BAD_INPUT);
-	assert_int_equal(fidelity_measure(&q.truth, &p.table, &f, &error), BP_ERROR_ARGUMENT);
+	assert_int_equal(fidelity_measure(&p.truth, &p.table, 1, &f, &error), BP_ERROR_BAD_INPUT);
+	assert_int_equal(fidelity_measure(&q.truth, &p.table, 1, &f, &error), BP_ERROR_ARGUMENT);
 	pair_free(&p);
 	pair_free(&q);
 }

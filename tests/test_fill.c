@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -17,7 +18,7 @@ static void fill_once(uint32_t rows, uint32_t columns, float *plane, const uint8
 	struct fill *fill;
 	assert_int_equal(fill_create(rows, columns, &fill, NULL), BP_OK);
 	fill_plane(fill, plane, valid, empty);
-	fill_free(fill);
+	free(fill);
 }
 
 static void valid_cells_stay_and_filled_ones_lie_between_them(void **user)

@@ -107,7 +107,7 @@ static void what_is_black_above_the_horizon_stays_black(void **state)
 		written_back(LATTICES[d], 12, clamped, &lattice, &valid);
 		const size_t cells = lattice_cells(lattice.dims);
 		uint8_t *seen = malloc(cells);
-		assert_int_equal(lattice_seen(lattice.dims, seen, NULL), BP_OK);
+		lattice_seen(lattice.dims, seen);
 		blacken(&lattice, lattice.dims.theta_h * 3 / 4);
 		size_t black = 0, hidden = 0;
 		for (size_t n = 0; n < cells; n++) {
@@ -190,7 +190,7 @@ static void a_formula_that_ends_at_the_horizon(void **state)
 		material_fill(LATTICES[d], 0.2, 30, &lattice);
 		const size_t cells = lattice_cells(lattice.dims);
 		uint8_t *below = malloc(cells);
-		assert_int_equal(lattice_centre_below(lattice.dims, 0, below, NULL), BP_OK);
+		lattice_centre_below(lattice.dims, 0, below);
 		size_t count = 0;
 		for (size_t n = 0; n < cells; n++)
 			for (int c = 0; c < 3; c++)
@@ -215,7 +215,7 @@ static void black_cells_at_the_edge_stay_measured(void **state)
 	uint8_t *valid, *near_edge = malloc(lattice_cells(LATTICE_MERL));
 	(void)state;
 	written_back(LATTICE_MERL, 9, clamped, &lattice, &valid);
-	assert_int_equal(lattice_centre_below(LATTICE_MERL, LATTICE_MERL_HORIZON + 0.002, near_edge, NULL), BP_OK);
+	lattice_centre_below(LATTICE_MERL, LATTICE_MERL_HORIZON + 0.002, near_edge);
 	for (size_t n = 0; n < lattice_cells(LATTICE_MERL); n++)
 		for (int c = 0; c < 3 && near_edge[n]; c++)
 			lattice.rgb[c][n] = 0;
@@ -237,8 +237,8 @@ static void a_value_that_goes_on_above_a_deep_edge_is_measured(void **state)
 	const size_t cells = lattice_cells(dims);
 	uint8_t *seen = malloc(cells), *deep = malloc(cells);
 	(void)state;
-	assert_int_equal(lattice_seen(dims, seen, NULL), BP_OK);
-	assert_int_equal(lattice_centre_below(dims, -0.15, deep, NULL), BP_OK);
+	lattice_seen(dims, seen);
+	lattice_centre_below(dims, -0.15, deep);
 	for (int most = 0; most < 2; most++) {
 		struct lattice lattice;
 		struct holes holes;

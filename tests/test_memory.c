@@ -1,4 +1,5 @@
-/* A block that is kept lies in memory with its own bytes only, whatever pages it is made of; lists grow by doubling. */
+/* A block that is kept lies in memory with its own bytes only, whatever pages it is made of; tables do not split the heap; lists grow by doubling. */
+#include <limits.h>
 #include <setjmp.h>
 #include <stdbool.h>
 #include <stdarg.h>
@@ -10,6 +11,10 @@
 #include <unistd.h>
 
 #include <cmocka.h>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "memory.h"
 
@@ -44,6 +49,47 @@ static void a_kept_block_takes_its_own_bytes_and_no_huge_page_more(void **user)
 		for (int m = 0; m < COUNT; m++)
 			free(block[m]);
 	}
+}
+
+/*
+ * A worker keeps its freed memory for the next material (tool/worker_process.c). Tables of many sizes that come and go between
+ * small blocks that stay must find the place of earlier ones.
+ */
+static void tables_that_come_and_go_do_not_split_the_heap(void **user)
+{
+#ifdef __GLIBC__
+	enum { TABLES = 8, ROUNDS = 50 };
+	static const size_t bytes[TABLES] = {35000000, 17500000, 6000000, 2600000, 9000000, 4300000, 1500000, 18000000};
+	void *table[TABLES], *small[TABLES], *kept[ROUNDS];
+	size_t all = 0;
+	(void)user;
+	mallopt(M_MMAP_MAX, 0);
+	mallopt(M_TRIM_THRESHOLD, INT_MAX);
+	for (size_t i = 0; i < ROUNDS; i++) {
+		for (size_t k = 0; k < TABLES; k++) {
+			table[k] = memory_alloc(bytes[(k + i) % TABLES]);
+			small[k] = malloc(1000 + 37 * i);
+			assert_non_null(table[k]);
+			assert_non_null(small[k]);
+		}
+		for (size_t k = 0; k < TABLES; k++) {
+			free(table[k]);
+			free(small[k]);
+		}
+		kept[i] = malloc(500);
+		assert_non_null(kept[i]);
+	}
+	for (size_t k = 0; k < TABLES; k++)
+		all += bytes[k];
+	const size_t heap = mallinfo2().arena; /* 0 under sanitizers */
+	for (size_t i = 0; i < ROUNDS; i++)
+		free(kept[i]);
+	if (heap > 5 * all)
+		fail_msg("the heap takes %zu bytes for tables of %zu", heap, all);
+#else
+	(void)user;
+	skip();
+#endif
 }
 
 /* Written beyond its room a list would trip the sanitizers; moved more often than it doubles, this count. */
@@ -90,6 +136,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_kept_block_takes_its_own_bytes_and_no_huge_page_more),
+		cmocka_unit_test(tables_that_come_and_go_do_not_split_the_heap),
 		cmocka_unit_test(a_list_grows_by_doubling_and_keeps_what_it_holds),
 		cmocka_unit_test(a_block_is_kept_as_long_as_it_holds_what_is_asked_for),
 	};

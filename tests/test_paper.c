@@ -12,8 +12,6 @@
 #include <cmocka.h>
 
 #include "model/fidelity.h"
-#include "model/paper/field.h"
-#include "model/paper/paper_plane.h"
 #include "model/model.h"
 #include "model/paper/paper.h"
 #include "model/paper/sparse_fit.h"
@@ -66,7 +64,7 @@ static struct fidelity fit_and_measure(const struct lattice *l, struct model **m
 	assert_int_equal(expansion_alloc(l->dims, table, NULL), BP_OK);
 	for (uint32_t layers = 1; layers <= (*model)->layer_count; layers++)
 		assert_expands_finite(*model, layers, table);
-	assert_int_equal(fidelity_measure(l, table, &f, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(l, table, 1, &f, NULL), BP_OK);
 	return f;
 }
 
@@ -163,7 +161,7 @@ static void a_merl_size_material_is_fitted_well(void **user)
 	lattice_make(&l, LATTICE_MERL, 0.01);
 	struct fidelity f = fit_and_measure(&l, &model, &table), first;
 	assert_int_equal(model_expand(model, 1, &table, NULL), BP_OK);
-	assert_int_equal(fidelity_measure(&l, &table, &first, NULL), BP_OK);
+	assert_int_equal(fidelity_measure(&l, &table, 1, &first, NULL), BP_OK);
 	assert_true(f.log_rmse < 0.05);
 	assert_true(f.log_rmse < first.log_rmse / 2);
 	for (int c = 0; c < 3; c++) {
@@ -363,12 +361,13 @@ static void a_field_of_zeros_is_not_a_field_of_ones(void **user)
 	struct field_codec *codec;
 	struct sparse_field field;
 	float wanted[20] = {0}, weight[20], energy[64], x[64] = {0}, back[20];
+	struct sparse_target target = {wanted, weight, energy, 0};
 	for (int i = 0; i < 20; i++)
 		weight[i] = 1;
 	assert_true(wavelet_cells(&plane) <= 64);
 	assert_int_equal(sparse_fit_create(&plane, &fit, NULL), BP_OK);
-	const float least = sparse_fit_energies(&fit, weight, energy);
-	assert_int_equal(sparse_fit_quantise(&fit, wanted, weight, energy, least, 1, x, &field, NULL), BP_OK);
+	sparse_fit_energies(&fit, &target);
+	assert_int_equal(sparse_fit_quantise(&fit, &target, 1, x, &field, NULL), BP_OK);
 	assert_int_equal(field.count, 1);
 	assert_int_equal(field_codec_create(d, PAPER_SLICE, &codec, NULL), BP_OK);
 	field_expand(codec, &field, back);
@@ -380,9 +379,9 @@ static void a_field_of_zeros_is_not_a_field_of_ones(void **user)
 	sparse_field_free(&field);
 	for (int i = 0; i < 20; i++)
 		wanted[i] = 1;
-	assert_int_equal(sparse_fit_quantise(&fit, wanted, weight, energy, least, 1, x, &field, NULL), BP_OK);
+	assert_int_equal(sparse_fit_quantise(&fit, &target, 1, x, &field, NULL), BP_OK);
 	assert_int_equal(field.count, 0);
-	field_codec_free(codec);
+	free(codec);
 	sparse_fit_free(&fit);
 }
 
@@ -396,13 +395,14 @@ static void enough_coefficients_say_everything(void **user)
 	float *wanted = malloc(n * sizeof *wanted), *weight = malloc(n * sizeof *weight), *energy = malloc(m * sizeof *energy);
 	float *x = calloc(m, sizeof *x), *back = malloc(n * sizeof *back);
 	uint8_t *kept = malloc(m);
+	struct sparse_target target = {wanted, weight, energy, 0};
 	for (size_t i = 0; i < n; i++) {
 		wanted[i] = (float)(1 + uniform());
 		weight[i] = i % 5 ? (float)(0.1 + uniform()) : 0;
 	}
 	assert_int_equal(sparse_fit_create(&plane, &fit, NULL), BP_OK);
-	const float least = sparse_fit_energies(&fit, weight, energy);
-	sparse_fit_rounds(&fit, wanted, weight, energy, least, m, 2, 100, kept, x);
+	sparse_fit_energies(&fit, &target);
+	sparse_fit_rounds(&fit, &target, m, 2, 100, kept, x);
 	wavelet_inverse(&plane, x, back, fit.scratch);
 	for (size_t i = 0; i < n; i++)
 		assert_true(weight[i] == 0 || fabsf(back[i] - wanted[i]) < 2e-3f);
@@ -420,21 +420,17 @@ static void the_largest_gains_are_kept(void **user)
 {
 	(void)user;
 	enum { N = 1000 };
-	static struct gain_counts counts;
 	float gain[N];
+	uint8_t kept[N];
 	for (int i = 0; i < N; i++)
 		gain[i] = i % 10 ? (float)pow(10, 20 * uniform() - 10) : i % 20 ? 1 : 0;
-	memset(&counts, 0, sizeof counts);
-	gain_count(&counts, gain, N);
 	for (size_t keep = 0; keep <= N; keep += 50) {
-		struct gain_limit limit = gain_limit_of(&counts, keep);
-		const float edge = gain_at(limit);
+		const float edge = gains_keep(gain, N, keep, kept);
 		size_t count = 0;
 		for (int i = 0; i < N; i++) {
-			const bool kept = gain_kept(&limit, gain[i]);
-			count += kept;
-			assert_true(!kept || gain[i] >= edge);
-			assert_true(kept || gain[i] <= edge * (1 + 1.0f / 32) || gain[i] == 0);
+			count += kept[i];
+			assert_true(!kept[i] || gain[i] >= edge);
+			assert_true(kept[i] || gain[i] <= edge * (1 + 1.0f / 32) || gain[i] == 0);
 		}
 		assert_int_equal(count, keep < N - 50 ? keep : N - 50);
 	}

@@ -1,7 +1,7 @@
 #include "archive_fixture.h"
 
 #include "codec/profile_codec.h"
-#include "codec/paper/sparse_code.h"
+#include "codec/paper/paper_fields.h"
 #include "model/paper/paper.h"
 
 static uint64_t random_state = 88172645463325252u;
@@ -50,11 +50,9 @@ static struct model *model_make(struct lattice_dims dims, uint32_t divisor_pair,
 	for (int c = 0; c < 3; c++) {
 		struct paper_channel *channel = &paper->channel[c];
 		channel->scale = 0.123456789 * (c + 1);
-		for (int axis = 0; axis < 3; axis++) {
-			channel->marginal[axis] = malloc(extents[axis] * sizeof(float));
-			for (uint32_t i = 0; i < extents[axis]; i++)
-				channel->marginal[axis][i] = paper_coded((uint16_t)random_below(65536));
-		}
+		assert_int_equal(paper_marginals_alloc(dims, channel, NULL), BP_OK);
+		for (size_t i = 0; i < paper_marginal_values(dims); i++)
+			channel->marginal[0][i] = paper_coded((uint16_t)random_below(65536));
 		field_fill(dims, PAPER_HD, divisor_pair ? extents[0] * extents[1] / divisor_pair : 0, largest, &channel->hd);
 		field_fill(dims, PAPER_HPHI, divisor_pair ? extents[0] * extents[2] / divisor_pair : 0, largest, &channel->hphi);
 		channel->slice_count = paper_shared_from(dims.theta_h) + 1;
@@ -90,7 +88,7 @@ static bp_status pack(const struct model *model, uint32_t budget, struct packed 
 	struct model *decoded = NULL;
 	memset(out, 0, sizeof *out);
 	bp_status status =
-		PAPER_ENCODER.encode(model, &request, &out->sections, &out->head.layer_count, &out->head.left_out, &decoded, error);
+		paper_encode(model, &request, &out->sections, &out->head.layer_count, &out->head.left_out, &decoded, error);
 	if (status)
 		return status;
 	out->record_bytes = record_head_size(11, out->head.layer_count, out->sections.count);
@@ -338,13 +336,13 @@ static void a_level_is_refused_beyond_the_largest(void **state)
 			assert_int_equal(sparse_coder_create(dims, PAPER_HD, &coder, NULL), BP_OK);
 			sparse_encode(&encoder, coder, &field);
 			range_encoder_end(&encoder);
-			sparse_coder_free(coder);
+			free(coder);
 			assert_int_equal(sparse_coder_create(dims, PAPER_HD, &coder, NULL), BP_OK);
 			range_decoder_start(&decoder, out.bytes, out.count);
 			assert_int_equal(sparse_decode(&decoder, coder, 100, &read, NULL), beyond ? BP_ERROR_CORRUPT : BP_OK);
 			assert_true(beyond || (read.count == 1 && read.index[0] == 3 && read.level[0] == level));
 			sparse_field_free(&read);
-			sparse_coder_free(coder);
+			free(coder);
 			byte_buffer_free(&out);
 		}
 }

@@ -59,7 +59,7 @@ static void the_recorded_error_of_every_layer_is_the_measured_one(void **state)
 			assert_int_equal(record_decode_whole(&head, layers, record, &model, NULL), BP_OK);
 			assert_int_equal(model->layer_count, layers);
 			assert_int_equal(model_expand(model, 0, &table, NULL), BP_OK);
-			assert_int_equal(fidelity_measure(&lattice, &table, &measured, NULL), BP_OK);
+			assert_int_equal(fidelity_measure(&lattice, &table, 1, &measured, NULL), BP_OK);
 			assert_true(measured.log_rmse == head.layers[layers - 1].fidelity.log_rmse);
 			assert_true(measured.cube_root_rmse == head.layers[layers - 1].fidelity.cube_root_rmse);
 			assert_true(measured.largest_relative == head.layers[layers - 1].fidelity.largest_relative);

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "merl/merl_file.h"
-#include "merl/reciprocity.h"
+#include "merl/origin.h"
 #include "merl/rgl_file.h"
 #include "merl/two_halves.h"
 #include "memory_limit.h"

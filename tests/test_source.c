@@ -370,20 +370,20 @@ static void a_compressed_tar_is_a_stream_of_the_same_materials(void **state)
 		assert_int_equal(list.item_count, 0);
 		assert_int_equal(list.stream_count, 1);
 		struct container *stream;
-		assert_int_equal(container_open(list.streams[0], CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
+		assert_int_equal(container_open(list.streams[0].path, CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
 		static const char *const expected[][2] = {
 			{"nickel", "table of nickel"}, {"alum-bronze", "table of bronze"}, {"delrin", "table of delrin"}};
 		struct source_item item;
 		bool more;
 		for (int m = 0; m < 3; m++) {
-			assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, NULL), BP_OK);
+			assert_int_equal(source_stream_next(&list, 0, stream, &item, &more, NULL), BP_OK);
 			assert_true(more);
 			assert_string_equal(item.name, expected[m][0]);
 			if (m != 1) /* a member may be left unread */
 				assert_string_equal(content_of(stream), expected[m][1]);
 			source_item_clear(&item);
 		}
-		assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, NULL), BP_OK);
+		assert_int_equal(source_stream_next(&list, 0, stream, &item, &more, NULL), BP_OK);
 		assert_false(more);
 		assert_int_equal(list.ignored_count, 2);
 		container_close(stream);
@@ -403,18 +403,18 @@ static void a_second_name_in_a_stream_is_refused_as_soon_as_it_is_seen(void **st
 	struct source_item item;
 	bp_error error;
 	bool more;
-	assert_int_equal(container_open(list.streams[0], CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
+	assert_int_equal(container_open(list.streams[0].path, CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
 	for (int m = 0; m < 2; m++) {
-		assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, NULL), BP_OK);
+		assert_int_equal(source_stream_next(&list, 0, stream, &item, &more, NULL), BP_OK);
 		source_item_clear(&item);
 	}
-	assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, &error), BP_ERROR_ARGUMENT);
+	assert_int_equal(source_stream_next(&list, 0, stream, &item, &more, &error), BP_ERROR_ARGUMENT);
 	expect_words(error.message, "two materials named delrin");
 	assert_string_equal(item.path, in("i/a.tgz"));
 	assert_string_equal(item.member, "/etc/delrin.BINARY");
 	assert_true(more);
 	source_item_clear(&item);
-	assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, &error), BP_OK);
+	assert_int_equal(source_stream_next(&list, 0, stream, &item, &more, &error), BP_OK);
 	assert_false(more);
 	container_close(stream);
 	source_list_free(&list);
@@ -432,8 +432,8 @@ static void a_single_compressed_table_is_a_stream_of_one(void **state)
 	struct source_item item;
 	bool more;
 	assert_int_equal(list.stream_count, 1);
-	assert_int_equal(container_open(list.streams[0], CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
-	assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, NULL), BP_OK);
+	assert_int_equal(container_open(list.streams[0].path, CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
+	assert_int_equal(source_stream_next(&list, 0, stream, &item, &more, NULL), BP_OK);
 	assert_string_equal(item.name, "nickel");
 	assert_string_equal(content_of(stream), "table of nickel");
 	source_item_clear(&item);
@@ -693,10 +693,9 @@ static void a_stream_is_named_whichever_way_it_was_met_first(void **state)
 			assert_int_equal(source_scan(inputs, count, &watched, &list, NULL), BP_OK);
 			assert_int_equal(list.stream_count, 1);
 			const bool named = count == 2 || order;
-			assert_int_equal(list.stream_named[0], named);
-			assert_int_equal(container_open(list.streams[0], CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
-			assert_int_equal(source_stream_next(&list, list.streams[0], stream, &item, &more, &error),
-			                 named ? BP_ERROR_BAD_INPUT : BP_OK);
+			assert_int_equal(list.streams[0].named, named);
+			assert_int_equal(container_open(list.streams[0].path, CONTAINER_SEQUENTIAL, NULL, &stream, NULL), BP_OK);
+			assert_int_equal(source_stream_next(&list, 0, stream, &item, &more, &error), named ? BP_ERROR_BAD_INPUT : BP_OK);
 			assert_false(more);
 			if (named)
 				expect_words(error.message, "no material in it; other files passed over: 1 ");

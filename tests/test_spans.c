@@ -30,7 +30,7 @@ static void a_span_counts_the_cells_that_can_be_seen(void **unused)
 		const struct lattice_dims d = BOTH[n];
 		uint16_t *span = spans_of(d);
 		uint8_t *seen = malloc(lattice_cells(d));
-		assert_int_equal(lattice_seen(d, seen, NULL), BP_OK);
+		lattice_seen(d, seen);
 		for (uint32_t r = 0; r < d.theta_h * d.theta_d; r++) {
 			const double i = r / d.theta_d, j = r % d.theta_d;
 			const double h = i / d.theta_h * (i / d.theta_h) * M_PI_2, t = j / d.theta_d * M_PI_2;

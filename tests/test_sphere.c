@@ -239,8 +239,8 @@ static void invalid_cells_are_black_in_both_tables(void **state)
 		assert_true(measured.cells[at - 4 + c] > 0 && decoded.cells[at - 4 + c] == 1.5f);
 	}
 	lookup_table_free(&decoded);
-	assert_int_equal(lookup_table_decoded(&expansion, NULL, 0, &decoded, &error), BP_OK);
-	assert_true(decoded.cells[at] == 3 && decoded.unit == 0.5);
+	assert_int_equal(lookup_table_decoded(&expansion, lattice.valid, 0, &decoded, &error), BP_OK);
+	assert_true(decoded.cells[at - 4] == 3 && decoded.unit == 0.5);
 	lookup_table_free(&measured);
 	lookup_table_free(&decoded);
 	expansion_free(&expansion);

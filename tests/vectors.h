@@ -57,7 +57,6 @@ FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 {
 	struct model *model = calloc(1, sizeof *model);
 	struct paper_model *paper = calloc(1, sizeof *paper);
-	const uint32_t extents[3] = {shape.dims.theta_h, shape.dims.theta_d, shape.dims.phi_d};
 	const uint16_t step = PAPER_STEP_ONE - 7 * 256;
 	vector_state = seed;
 	model->profile = PROFILE_PAPER;
@@ -70,11 +69,10 @@ FIXTURE struct model *vector_model(struct vector_shape shape, uint32_t seed)
 		model->colour[c] =
 			(struct colour_fit){shape.scale * (0.125 - 0.0625 * c), 1.25 - 0.25 * c, 9u + (uint32_t)c, c != 1, 0.03125 * c};
 		channel->scale = shape.scale;
-		for (int axis = 0; axis < 3; axis++) {
-			channel->marginal[axis] = malloc(extents[axis] * sizeof(float));
-			for (uint32_t i = 0; i < extents[axis]; i++)
-				channel->marginal[axis][i] = paper_coded((uint16_t)(PAPER_STEP_ONE - 1000 + vector_random(2000)));
-		}
+		if (paper_marginals_alloc(shape.dims, channel, NULL) != BP_OK)
+			abort();
+		for (size_t i = 0; i < paper_marginal_values(shape.dims); i++)
+			channel->marginal[0][i] = paper_coded((uint16_t)(PAPER_STEP_ONE - 1000 + vector_random(2000)));
 		vector_field(shape.dims, PAPER_HD, shape.hd, step, &channel->hd);
 		vector_field(shape.dims, PAPER_HPHI, shape.hphi, step, &channel->hphi);
 		channel->slice_count = paper_shared_from(shape.dims.theta_h) + 1;
@@ -96,7 +94,7 @@ FIXTURE void vector_encode(const char *name, struct vector_shape shape, struct r
 	head->dims = model->dims;
 	memcpy(head->colour, model->colour, sizeof head->colour);
 	memset(sections, 0, sizeof *sections);
-	assert_int_equal(PAPER_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
+	assert_int_equal(paper_encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
 		head->layers[l].fidelity = (struct fidelity){0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1),
 		                                             2.0 / (l + 1)}; /* invented: there is no source */

@@ -142,7 +142,7 @@ FIXTURE void raw_archive(const char *path, uint8_t *const *records, const size_t
 	struct byte_buffer file = {0};
 	uint8_t page[PAGE_BYTES] = {0};
 	struct byte_buffer entries = {.bytes = page, .capacity = PAGE_BYTES};
-	struct archive_header header = {.major = 1, .count = count, .page_count = 1, .depth = 1};
+	struct archive_header header = {.count = count, .page_count = 1, .depth = 1};
 	write_zeros(&file, ARCHIVE_HEADER_BYTES);
 	write_bytes(&entries, PAGE_MAGIC, 4);
 	write_u16(&entries, 0);

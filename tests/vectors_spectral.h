@@ -43,8 +43,7 @@ FIXTURE void vector_spectral_encode(const char *name, struct lattice_dims dims, 
 	head->options = options;
 	head->horizon_limit = -0.0625;
 	memset(sections, 0, sizeof *sections);
-	assert_int_equal(SPECTRAL_ENCODER.encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL),
-	                 BP_OK);
+	assert_int_equal(spectral_encode(model, &request, sections, &head->layer_count, &head->left_out, &decoded, NULL), BP_OK);
 	for (uint32_t l = 0; l < head->layer_count; l++)
 		head->layers[l].fidelity = (struct fidelity){0.25 / (l + 1), 0.1875 / (l + 1), 0.125 / (l + 1), 2.0 / (l + 1)};
 	model_free(model);

@@ -67,8 +67,10 @@ static bp_status table_put(const struct model *model, const bp_table_options *op
 	bp_status status = model_expand(model, 0, &table, error);
 	if (!status && !options->continued) {
 		below = malloc(lattice_cells(model->dims));
-		status = below ? lattice_below_horizon(model->dims, model->horizon_limit, below, error)
-		               : error_memory(error, lattice_cells(model->dims));
+		if (below)
+			lattice_below_horizon(model->dims, model->horizon_limit, below);
+		else
+			status = error_memory(error, lattice_cells(model->dims));
 	}
 	for (int c = 0; !status && c < CHANNELS; c++)
 		channel_put(&table, c, below, options, values);

@@ -11,9 +11,9 @@ void archive_header_write(const struct archive_header *header, uint8_t bytes[ARC
 {
 	struct byte_buffer out = {.bytes = bytes, .capacity = ARCHIVE_HEADER_BYTES};
 	write_bytes(&out, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES);
-	write_u16(&out, header->major);
-	write_u16(&out, header->minor);
-	write_u32(&out, header->flags);
+	write_u16(&out, ARCHIVE_MAJOR);
+	write_u16(&out, ARCHIVE_MINOR);
+	write_u32(&out, 0); /* flags */
 	write_u64(&out, header->file_bytes);
 	write_u64(&out, header->count);
 	write_u64(&out, header->index_offset);
@@ -57,28 +57,26 @@ bp_status archive_header_read(const uint8_t *bytes, size_t count, uint64_t file_
 	if (bytes_crc32(bytes, AT_CRC) != load_u32(bytes + AT_CRC))
 		return error_set(error, BP_ERROR_CHECKSUM, AT_CRC, "the checksum of the archive's header differs");
 	in.at = AT_MAJOR;
-	header.major = read_u16(&in);
-	header.minor = read_u16(&in);
-	header.flags = read_u32(&in);
+	const uint16_t major = read_u16(&in), minor = read_u16(&in);
+	const uint32_t flags = read_u32(&in);
 	header.file_bytes = read_u64(&in);
 	header.count = read_u64(&in);
 	header.index_offset = read_u64(&in);
 	header.page_count = read_u32(&in);
 	header.depth = read_u32(&in);
 	const uint8_t *reserved = read_span(&in, AT_CRC - AT_RESERVED);
-	if (header.major != ARCHIVE_MAJOR)
-		return error_set(error, BP_ERROR_UNSUPPORTED, AT_MAJOR, "archive format %u.%u; this program reads %d.x", header.major,
-		                 header.minor, ARCHIVE_MAJOR);
-	if (header.flags & ARCHIVE_REQUIRED_FLAGS)
+	if (major != ARCHIVE_MAJOR)
+		return error_set(error, BP_ERROR_UNSUPPORTED, AT_MAJOR, "archive format %u.%u; this program reads %d.x", major, minor,
+		                 ARCHIVE_MAJOR);
+	if (flags & ARCHIVE_REQUIRED_FLAGS)
 		return error_set(error, BP_ERROR_UNSUPPORTED, AT_FLAGS, "the archive needs features 0x%x that this program lacks",
-		                 header.flags & ARCHIVE_REQUIRED_FLAGS);
+		                 flags & ARCHIVE_REQUIRED_FLAGS);
 	/* A newer minor version may use the reserved bytes; ours are zero. */
-	for (int i = 0; header.minor <= ARCHIVE_MINOR && i < AT_CRC - AT_RESERVED; i++)
+	for (int i = 0; minor <= ARCHIVE_MINOR && i < AT_CRC - AT_RESERVED; i++)
 		if (reserved[i])
 			return error_set(error, BP_ERROR_CORRUPT, (uint64_t)(AT_RESERVED + i), "reserved bytes of the header are not zero");
-	bp_status status = header_check(&header, file_bytes, error);
-	if (status)
-		return status;
-	*out = header;
-	return BP_OK;
+	const bp_status status = header_check(&header, file_bytes, error);
+	if (!status)
+		*out = header;
+	return status;
 }

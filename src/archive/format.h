@@ -38,8 +38,6 @@ enum {
 #define ARCHIVE_PAGES_MAX UINT64_C(16000000)
 
 struct archive_header {
-	uint16_t major, minor;
-	uint32_t flags;
 	uint64_t file_bytes;
 	uint64_t count;        /* materials */
 	uint64_t index_offset; /* of page 0 = the end of the last record */
@@ -47,6 +45,7 @@ struct archive_header {
 	uint32_t depth;        /* levels: 1 where the root is a leaf; 0 when count is 0 */
 };
 
+/* Of this version of the format, without flags. */
 void archive_header_write(const struct archive_header *header, uint8_t bytes[ARCHIVE_HEADER_BYTES]);
 
 /*

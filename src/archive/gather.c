@@ -53,15 +53,6 @@ static size_t place_find(const bp_writer *writer, const char *name)
 	return low;
 }
 
-static bp_status room_make(bp_writer *writer, bp_error *error)
-{
-	struct gathered *list = memory_grown(writer->list, writer->count, sizeof *list);
-	if (!list)
-		return error_memory(error, writer->count * sizeof *list);
-	writer->list = list;
-	return BP_OK;
-}
-
 bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_bytes, bp_error *error)
 {
 	struct record_head head;
@@ -73,16 +64,16 @@ bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_
 	const size_t place = place_find(writer, head.name), name_bytes = strlen(head.name) + 1;
 	if (place < writer->count && !strcmp(writer->list[place].name, head.name))
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is a material \"%s\" already", head.name);
-	status = room_make(writer, error);
-	if (status)
-		return status;
-	uint8_t *copy = malloc(record_bytes + name_bytes);
+	struct gathered *list = memory_grown(writer->list, writer->count, sizeof *list);
+	if (list)
+		writer->list = list;
+	uint8_t *copy = list ? malloc(record_bytes + name_bytes) : NULL;
 	if (!copy)
 		return error_memory(error, record_bytes + name_bytes);
 	memcpy(copy, record, record_bytes);
 	memcpy(copy + record_bytes, head.name, name_bytes);
-	memmove(writer->list + place + 1, writer->list + place, (writer->count - place) * sizeof *writer->list);
-	writer->list[place] = (struct gathered){.name = (char *)copy + record_bytes, .record = copy, .bytes = record_bytes};
+	memmove(list + place + 1, list + place, (writer->count - place) * sizeof *list);
+	list[place] = (struct gathered){.name = (char *)copy + record_bytes, .record = copy, .bytes = record_bytes};
 	writer->count++;
 	return BP_OK;
 }

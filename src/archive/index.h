@@ -25,7 +25,7 @@ static inline size_t index_fixed_bytes(uint32_t level) { return level ? 4 + 8 + 
 /* -- writing -- */
 
 struct index_builder {
-	struct byte_buffer entries; /* leaf entries as they come: bytes of a page without head */
+	struct byte_buffer entries; /* leaf entries as they come: bytes of a page without head; the owner frees it */
 	uint64_t count;
 };
 
@@ -38,7 +38,6 @@ typedef bp_status index_page_fn(void *user, const uint8_t page[PAGE_BYTES], bp_e
 /* Lays out all levels. *page_count and *depth are 0 when nothing was added. */
 bp_status index_write(const struct index_builder *builder, index_page_fn *write, void *user, uint32_t *page_count,
                       uint32_t *depth, bp_error *error);
-void index_builder_free(struct index_builder *builder);
 
 /* -- reading -- */
 
@@ -72,9 +71,11 @@ void index_leaf_entry(const struct index_page *leaf, uint32_t i, struct index_en
 struct page_expect index_child(const struct index_page *inner, uint32_t i);
 uint64_t index_child_end(const struct index_page *inner, uint32_t i, uint64_t own_end); /* first ordinal behind child i */
 
-/* The entry whose subtree holds the name / the ordinal: the last one that is not greater. UINT32_MAX when all are greater. */
-uint32_t index_search_name(const struct index_page *page, const char *name, size_t name_bytes);
-uint32_t index_search_ordinal(const struct index_page *page, uint64_t ordinal);
+/*
+ * The entry whose subtree holds the name, or, name NULL, the ordinal (of an inner page): the last one that is not greater.
+ * UINT32_MAX when all are greater.
+ */
+uint32_t index_search(const struct index_page *page, const char *name, uint64_t ordinal);
 
 /* Name bytes of entry i, in the page. */
 const char *index_entry_name(const struct index_page *page, uint32_t i, uint32_t *name_bytes);

@@ -38,30 +38,14 @@ uint64_t index_child_end(const struct index_page *inner, uint32_t i, uint64_t ow
 	return i + 1 < inner->count ? index_child(inner, i + 1).first_ordinal : own_end;
 }
 
-uint32_t index_search_name(const struct index_page *page, const char *name, size_t name_bytes)
+uint32_t index_search(const struct index_page *page, const char *name, uint64_t ordinal)
 {
+	const size_t name_bytes = name ? strlen(name) : 0;
 	uint32_t low = 0, high = page->count; /* entries below low are not greater, from high on they are */
 	while (low < high) {
 		uint32_t middle = (low + high) / 2, bytes;
 		const char *here = index_entry_name(page, middle, &bytes);
-		if (name_compare(here, bytes, name, name_bytes) <= 0)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return low ? low - 1 : UINT32_MAX;
-}
-
-uint32_t index_search_ordinal(const struct index_page *page, uint64_t ordinal)
-{
-	uint32_t low = 0, high = page->count;
-	if (ordinal < page->first_ordinal)
-		return UINT32_MAX;
-	if (page->level == 0)
-		return ordinal - page->first_ordinal < page->count ? (uint32_t)(ordinal - page->first_ordinal) : page->count - 1;
-	while (low < high) {
-		uint32_t middle = (low + high) / 2;
-		if (index_child(page, middle).first_ordinal <= ordinal)
+		if (name ? name_compare(here, bytes, name, name_bytes) <= 0 : index_child(page, middle).first_ordinal <= ordinal)
 			low = middle + 1;
 		else
 			high = middle;

@@ -14,22 +14,15 @@ void index_add(struct index_builder *builder, const char *name, uint64_t offset,
 	builder->count++;
 }
 
-void index_builder_free(struct index_builder *builder)
-{
-	byte_buffer_free(&builder->entries);
-	builder->count = 0;
-}
-
 /*
  * Packs the entries of one level into pages, each as full as it gets, and notes in *above the inner
  * entry that leads to each page.
  */
 static bp_status level_write(const struct byte_buffer *entries, uint32_t level, index_page_fn *write, void *user,
-                             uint32_t *page_number, struct byte_buffer *above, uint32_t *pages, bp_error *error)
+                             uint32_t *page_number, struct byte_buffer *above, bp_error *error)
 {
 	size_t fixed = index_fixed_bytes(level), at = 0;
 	uint64_t ordinal = 0;
-	*pages = 0;
 	while (at < entries->count) {
 		uint8_t page[PAGE_BYTES] = {0};
 		struct byte_buffer out = {.bytes = page, .capacity = PAGE_BYTES};
@@ -58,7 +51,6 @@ static bp_status level_write(const struct byte_buffer *entries, uint32_t level, 
 		ordinal += count;
 		at = end;
 		++*page_number;
-		++*pages;
 	}
 	return above->failed ? error_memory(error, above->count) : BP_OK;
 }
@@ -68,7 +60,7 @@ bp_status index_write(const struct index_builder *builder, index_page_fn *write,
 {
 	const struct byte_buffer *entries = &builder->entries;
 	struct byte_buffer held = {0};
-	uint32_t pages = 0, level = 0, number = 0;
+	uint32_t level = 0, number = 0;
 	bp_status status = BP_OK;
 
 	*page_count = *depth = 0;
@@ -79,12 +71,13 @@ bp_status index_write(const struct index_builder *builder, index_page_fn *write,
 		                 (unsigned long long)builder->count, (unsigned long long)ARCHIVE_COUNT_MAX);
 	while (builder->count) {
 		struct byte_buffer above = {0};
-		status = level_write(entries, level, write, user, &number, &above, &pages, error);
+		const uint32_t first = number;
+		status = level_write(entries, level, write, user, &number, &above, error);
 		byte_buffer_free(&held);
 		held = above;
 		entries = &held;
 		level++;
-		if (status || pages == 1)
+		if (status || number == first + 1)
 			break;
 	}
 	byte_buffer_free(&held);

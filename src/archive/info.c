@@ -11,6 +11,7 @@ _Static_assert(BP_NAME_BYTES_MAX == (int)RECORD_NAME_BYTES_MAX, "the public limi
 static void info_fill(const struct record_head *head, uint64_t offset, bp_material_info *info)
 {
 	memset(info, 0, sizeof *info);
+	info->struct_bytes = sizeof *info;
 	memcpy(info->name, head->name, sizeof info->name);
 	info->profile = (uint32_t)head->profile;
 	info->codec_version = head->codec_version;
@@ -42,36 +43,32 @@ bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material
 {
 	struct index_entry entry;
 	struct record_head head;
-	bp_material_info full;
-	if (!info || info->struct_bytes != sizeof full)
+	if (!info || info->struct_bytes != sizeof *info)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_material_info)");
-	bp_status status = archive_record_head(archive, index, &entry, &head, error);
-	if (status)
-		return status;
-	info_fill(&head, entry.offset, &full);
-	full.struct_bytes = sizeof full;
-	*info = full;
-	return BP_OK;
+	const bp_status status = archive_record_head(archive, index, &entry, &head, error);
+	if (!status)
+		info_fill(&head, entry.offset, info);
+	return status;
 }
 
-static bp_status element_check(size_t element_bytes, size_t known, const void *elements, uint32_t capacity, bp_error *error)
+/* The head, where the caller knows elements of `known` bytes as this library does. */
+static bp_status elements_head(const bp_archive *archive, uint64_t index, size_t element_bytes, size_t known,
+                               const void *elements, uint32_t capacity, struct record_head *head, bp_error *error)
 {
+	struct index_entry entry;
 	if (element_bytes != known)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "element_bytes is %zu, an element has %zu", element_bytes,
 		                 known);
 	if (capacity && !elements)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no place for %u elements", capacity);
-	return BP_OK;
+	return archive_record_head(archive, index, &entry, head, error);
 }
 
 bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_layer *layers, uint32_t capacity,
                             uint32_t *count, bp_error *error)
 {
-	struct index_entry entry;
 	struct record_head head;
-	bp_status status = element_check(element_bytes, sizeof *layers, layers, capacity, error);
-	if (!status)
-		status = archive_record_head(archive, index, &entry, &head, error);
+	const bp_status status = elements_head(archive, index, element_bytes, sizeof *layers, layers, capacity, &head, error);
 	if (status)
 		return status;
 	for (uint32_t l = 0; l < head.layer_count && l < capacity; l++) {
@@ -87,11 +84,8 @@ bp_status bp_archive_layers(const bp_archive *archive, uint64_t index, size_t el
 bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t element_bytes, bp_section *sections,
                               uint32_t capacity, uint32_t *count, bp_error *error)
 {
-	struct index_entry entry;
 	struct record_head head;
-	bp_status status = element_check(element_bytes, sizeof *sections, sections, capacity, error);
-	if (!status)
-		status = archive_record_head(archive, index, &entry, &head, error);
+	const bp_status status = elements_head(archive, index, element_bytes, sizeof *sections, sections, capacity, &head, error);
 	if (status)
 		return status;
 	for (uint32_t i = 0; i < head.section_count && i < capacity; i++) {
@@ -108,14 +102,11 @@ bp_status bp_archive_record(const bp_archive *archive, uint64_t index, uint8_t *
 	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
-	uint8_t *bytes = NULL;
 	leaf.count = 0;
 	bp_status status = archive_entry(archive, index, &leaf, &entry, error);
 	if (!status)
-		status = archive_entry_record(archive, &entry, &head, &bytes, error);
-	if (status)
-		return status;
-	*record = bytes;
-	*record_bytes = head.record_bytes;
-	return BP_OK;
+		status = archive_entry_record(archive, &entry, &head, record, error);
+	if (!status)
+		*record_bytes = head.record_bytes;
+	return status;
 }

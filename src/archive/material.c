@@ -43,30 +43,30 @@ static bp_status options_check(const bp_load_options *options, bp_error *error)
 	return BP_OK;
 }
 
-/* An achromatic load does without the sections that only colour needs. */
-static void colour_sections_drop(struct record_head *head)
+/* Leaves out what has one of the flags `some`, but for what has one of `wanted`. */
+static void sections_drop(struct record_head *head, uint32_t some, uint32_t wanted)
 {
 	uint32_t kept = 0;
 	for (uint32_t n = 0; n < head->section_count; n++)
-		if (!(head->sections[n].flags & SECTION_COLOUR))
+		if (!(head->sections[n].flags & some) || head->sections[n].flags & wanted)
 			head->sections[kept++] = head->sections[n];
 	head->section_count = kept;
 }
 
-/* One channel alone does without the sections of the others. */
-static bp_status channel_sections_keep(struct record_head *head, uint32_t channel, bp_error *error)
+/* An achromatic load does without the sections that only colour needs, one channel alone without those of the others. */
+static bp_status colour_choose(struct record_head *head, bp_colour colour, bp_error *error)
 {
-	const uint32_t all = (uint32_t)SECTION_ONLY_R * 7, wanted = (uint32_t)SECTION_ONLY_R << channel;
-	uint32_t kept = 0;
-
+	if (colour == BP_COLOUR_RGB)
+		return BP_OK;
+	if (colour == BP_COLOUR_MEAN) {
+		sections_drop(head, SECTION_COLOUR, 0);
+		return BP_OK;
+	}
 	if (head->profile != PROFILE_PAPER)
 		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "%s: records of this profile do not keep the channels apart",
 		                 head->name);
-	for (uint32_t n = 0; n < head->section_count; n++)
-		if (!(head->sections[n].flags & all) || head->sections[n].flags & wanted)
-			head->sections[kept++] = head->sections[n];
-	head->section_count = kept;
-	head->channels = 1u << channel;
+	sections_drop(head, (uint32_t)SECTION_ONLY_R * 7, (uint32_t)SECTION_ONLY_R << (colour - BP_COLOUR_R));
+	head->channels = 1u << (colour - BP_COLOUR_R);
 	return BP_OK;
 }
 
@@ -80,12 +80,16 @@ static bp_status material_build(const struct model *model, const bp_load_options
 		status = sampler_build(material->table, &material->sampler, error);
 	if (!status && options->sampling)
 		status = albedo_cache_make(&material->albedo, error);
-	if (!preview)
-		half = model->dims;
-	material->loaded.form = options->form == BP_FORM_PREVIEW && !preview ? BP_FORM_EXPANDED : options->form;
-	material->loaded.theta_h = half.theta_h;
-	material->loaded.theta_d = half.theta_d;
-	material->loaded.phi_d = half.phi_d;
+	const struct lattice_dims dims = preview ? half : model->dims;
+	material->loaded = (bp_loaded){
+		.struct_bytes = sizeof material->loaded,
+		.form = options->form == BP_FORM_PREVIEW && !preview ? BP_FORM_EXPANDED : options->form,
+		.colour = options->colour,
+		.sampling = options->sampling,
+		.theta_h = dims.theta_h,
+		.theta_d = dims.theta_d,
+		.phi_d = dims.phi_d,
+	};
 	return status;
 }
 
@@ -140,21 +144,15 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 
 	options = options ? options : &whole;
 	bp_status status = options_check(options, error);
-	if (status)
-		return status;
-	status = archive_record_head(archive, index, &entry, &head, error);
+	if (!status)
+		status = archive_record_head(archive, index, &entry, &head, error);
 	if (!status)
 		status = need_check(&head, options->max_memory_bytes, error);
+	if (!status)
+		status = colour_choose(&head, options->colour, error);
 	if (status)
 		return status;
-
 	const uint32_t layers = record_layers_for(&head, options->max_log_rmse);
-	if (options->colour == BP_COLOUR_MEAN)
-		colour_sections_drop(&head);
-	else if (options->colour != BP_COLOUR_RGB)
-		status = channel_sections_keep(&head, options->colour - BP_COLOUR_R, error);
-	if (status)
-		return status;
 	environment_enter(&before);
 	const bp_allocator *allocator_before = allocator_enter(options->allocator);
 	status = material_fill(archive, &entry, &head, layers, options, &material, error);
@@ -164,20 +162,12 @@ bp_status bp_material_load(const bp_archive *archive, uint64_t index, const bp_l
 		bp_material_free(material);
 		return status;
 	}
-	material->loaded = (bp_loaded){
-		.struct_bytes = sizeof material->loaded,
-		.layers = layers,
-		.log_rmse = head.layers[layers - 1].fidelity.log_rmse,
-		.read_bytes = record_bytes_needed(&head, layers),
-		.memory_bytes = sizeof *material + table_bytes(material->table) +
-	                    (material->sampler ? sampler_bytes(material->sampler) + albedo_cache_bytes() : 0),
-		.form = material->loaded.form,
-		.colour = options->colour,
-		.sampling = options->sampling,
-		.theta_h = material->loaded.theta_h,
-		.theta_d = material->loaded.theta_d,
-		.phi_d = material->loaded.phi_d,
-	};
+	bp_loaded *loaded = &material->loaded;
+	loaded->layers = layers;
+	loaded->log_rmse = head.layers[layers - 1].fidelity.log_rmse;
+	loaded->read_bytes = record_bytes_needed(&head, layers);
+	loaded->memory_bytes = sizeof *material + table_bytes(material->table) +
+	                       (material->sampler ? sampler_bytes(material->sampler) + albedo_cache_bytes() : 0);
 	*out = material;
 	return BP_OK;
 }

@@ -55,10 +55,8 @@ static bp_status record_copy(const struct bp_archive *archive, const struct inde
 		strcpy(totals->damaged, entry->name);
 	if (!status && options->shards)
 		status = likeness_check(likeness, archive, &head, error);
-	if (status) {
-		free(record);
-		return status;
-	}
+	if (status)
+		goto out;
 	const uint32_t layers = record_layers_for(&head, options->max_log_rmse);
 	size_t bytes = head.record_bytes;
 	if (layers < head.layer_count)
@@ -72,6 +70,7 @@ static bp_status record_copy(const struct bp_archive *archive, const struct inde
 		totals->bytes_from += head.record_bytes;
 		totals->bytes_to += bytes;
 	}
+out:
 	free(kept);
 	free(record);
 	return status;
@@ -157,6 +156,13 @@ static bp_status shard_check(const struct walk *walk, struct input *input, bp_er
 	return BP_OK;
 }
 
+/* The input comes to its next name; there is one. */
+static bp_status input_advance(struct input *input, const struct walk *walk, bp_error *error)
+{
+	const bp_status status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
+	return status ? status : shard_check(walk, input, error);
+}
+
 static bool input_before(const struct input *a, const struct input *b)
 {
 	const int order = strcmp(a->entry.name, b->entry.name);
@@ -184,13 +190,10 @@ static bp_status walk_advance(struct walk *walk, bp_error *error)
 {
 	struct input *input = walk->heap[0];
 	bp_status status = BP_OK;
-	if (input->next == input->count) {
+	if (input->next == input->count)
 		walk->heap[0] = walk->heap[--walk->count];
-	} else {
-		status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
-		if (!status)
-			status = shard_check(walk, input, error);
-	}
+	else
+		status = input_advance(input, walk, error);
 	if (!status)
 		walk_sink(walk, 0);
 	return status;
@@ -232,9 +235,7 @@ static bp_status walk_start(const struct bp_archive *const *archives, size_t cou
 		if (input->count == 0)
 			continue;
 		*failed = n;
-		bp_status status = archive_entry(input->archive, input->next++, &input->leaf, &input->entry, error);
-		if (!status)
-			status = shard_check(walk, input, error);
+		const bp_status status = input_advance(input, walk, error);
 		if (status)
 			return status;
 		walk->heap[walk->count++] = input;

@@ -91,18 +91,12 @@ static bp_status lattice_make(const bp_measured *measured, struct lattice *latti
 {
 	const struct lattice_dims dims = {measured->theta_h, measured->theta_d, measured->phi_d};
 	const bool unscaled = measured->scale[0] == 0 && measured->scale[1] == 0 && measured->scale[2] == 0;
-	bp_status status = lattice_dims_check(dims, error);
-	if (!status)
-		status = lattice_alloc(dims, lattice, error);
+	const bp_status status = lattice_alloc(dims, lattice, error);
 	if (status)
 		return status;
-	const size_t cells = lattice_cells(dims);
-	memset(lattice->valid, 0, cells);
-	for (int c = 0; c < CHANNELS; c++) {
-		plane_copy(measured, cells, c, unscaled ? 1 : measured->scale[c], lattice->rgb[c]);
-		lattice->most = fmax(lattice->most, lattice_scan(lattice->rgb[c], cells, 1, lattice->valid));
-	}
-	lattice_scan_finish(lattice);
+	for (int c = 0; c < CHANNELS; c++)
+		plane_copy(measured, lattice_cells(dims), c, unscaled ? 1 : measured->scale[c], lattice->rgb[c]);
+	lattice_validate(lattice);
 	return BP_OK;
 }
 

@@ -3,17 +3,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "name.h"
+#include "codec/record_origin.h"
 #include "error.h"
+#include "name.h"
 #include "system.h"
 
 struct bp_archive {
 	struct system_file *file; /* NULL: read through source */
 	bp_source source;
-	char *path; /* "" where there is none */
 	struct archive_header header;
 	_Atomic uint64_t *bytes_read; /* apart, so that a const handle can count */
 	struct index_page root;       /* count 0 when the archive is empty */
+	char path[];                  /* "" where there is none */
 };
 
 bp_status archive_read(const struct bp_archive *archive, uint64_t offset, void *bytes, size_t count, bp_error *error)
@@ -87,15 +88,13 @@ static bp_status archive_begin(struct bp_archive *archive, uint64_t file_bytes, 
 
 static bp_status archive_new(const char *path, struct bp_archive **out, bp_error *error)
 {
-	struct bp_archive *archive = calloc(1, sizeof *archive);
-	if (!archive)
-		return error_memory(error, sizeof *archive);
 	const size_t path_bytes = strlen(path) + 1;
-	archive->path = malloc(path_bytes);
-	archive->bytes_read = calloc(1, sizeof *archive->bytes_read);
-	if (!archive->path || !archive->bytes_read) {
+	struct bp_archive *archive = calloc(1, sizeof *archive + path_bytes);
+	if (archive)
+		archive->bytes_read = calloc(1, sizeof *archive->bytes_read);
+	if (!archive || !archive->bytes_read) {
 		bp_archive_close(archive);
-		return error_memory(error, path_bytes);
+		return error_memory(error, sizeof *archive + path_bytes);
 	}
 	memcpy(archive->path, path, path_bytes);
 	*out = archive;
@@ -157,7 +156,6 @@ void bp_archive_close(bp_archive *archive)
 	if (archive->source.close)
 		archive->source.close(archive->source.user);
 	system_file_close(archive->file);
-	free(archive->path);
 	free((void *)archive->bytes_read);
 	free(archive);
 }
@@ -173,7 +171,7 @@ static bp_status leaf_find(const struct bp_archive *archive, const char *name, u
 	struct index_page inner;
 	const struct index_page *page = &archive->root;
 	while (page->level) {
-		uint32_t i = name ? index_search_name(page, name, strlen(name)) : index_search_ordinal(page, ordinal);
+		uint32_t i = index_search(page, name, ordinal);
 		struct page_expect child;
 		char first_name[BP_NAME_BYTES_MAX + 1];
 		if (i == UINT32_MAX)
@@ -232,7 +230,7 @@ bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t 
 	bp_status status = leaf_find(archive, name, 0, &leaf, error);
 	if (status)
 		return status;
-	i = index_search_name(&leaf, name, strlen(name));
+	i = index_search(&leaf, name, 0);
 	const char *here = i == UINT32_MAX ? "" : index_entry_name(&leaf, i, &bytes);
 	if (i == UINT32_MAX || name_compare(here, bytes, name, strlen(name)) != 0)
 		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material \"%s\"", name);
@@ -269,42 +267,33 @@ bp_status archive_entry_head(const struct bp_archive *archive, const struct inde
                              bp_error *error)
 {
 	uint8_t bytes[RECORD_HEAD_BYTES_MAX];
-	struct record_head head;
 	bp_status status = entry_check(archive, entry, error);
 	if (!status)
 		status = archive_read(archive, entry->offset, bytes, entry->head_bytes, error);
 	if (!status)
-		status = error_shift(record_head_read(bytes, entry->head_bytes, &head, error), entry->offset, error);
-	if (!status)
-		status = head_check(entry, &head, error);
-	if (!status)
-		*out = head;
-	return status;
+		status = error_shift(record_head_read(bytes, entry->head_bytes, out, error), entry->offset, error);
+	return status ? status : head_check(entry, out, error);
 }
 
 bp_status archive_entry_record(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *out,
                                uint8_t **out_record, bp_error *error)
 {
-	struct record_head head;
-	uint8_t *record = NULL;
 	bp_status status = entry_check(archive, entry, error);
 	if (status)
 		return status;
-	record = malloc(entry->record_bytes);
+	uint8_t *record = malloc(entry->record_bytes);
 	if (!record)
 		return error_memory(error, entry->record_bytes);
 	status = archive_read(archive, entry->offset, record, entry->record_bytes, error);
 	if (!status)
-		status = error_shift(record_verify(record, entry->record_bytes, &head, error), entry->offset, error);
+		status = error_shift(record_verify(record, entry->record_bytes, out, error), entry->offset, error);
 	if (!status)
-		status = head_check(entry, &head, error);
-	if (status) {
+		status = head_check(entry, out, error);
+	if (status)
 		free(record);
-		return status;
-	}
-	*out = head;
-	*out_record = record;
-	return BP_OK;
+	else
+		*out_record = record;
+	return status;
 }
 
 bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct index_entry *entry,
@@ -314,4 +303,47 @@ bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, 
 	leaf.count = 0;
 	const bp_status status = archive_entry(archive, index, &leaf, entry, error);
 	return status ? status : archive_entry_head(archive, entry, head, error);
+}
+
+struct fetch_place {
+	const struct bp_archive *archive;
+	uint64_t offset; /* of the record */
+};
+
+static bp_status record_fetch(void *user, uint64_t offset, uint8_t *bytes, size_t count, bp_error *error)
+{
+	const struct fetch_place *place = user;
+	/* record_decode speaks of offsets from the record's start, and so do we to it. */
+	return error_shift(archive_read(place->archive, place->offset + offset, bytes, count, error), -place->offset, error);
+}
+
+bp_status archive_entry_load(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                             uint32_t layers, struct model **out, bp_error *error)
+{
+	struct fetch_place place = {.archive = archive, .offset = entry->offset};
+	return error_shift(record_decode(head, layers, record_fetch, &place, out, error), entry->offset, error);
+}
+
+bp_status archive_model_load(const struct bp_archive *archive, uint64_t index, uint32_t layers, struct model **out,
+                             bp_error *error)
+{
+	struct index_entry entry;
+	struct record_head head;
+	const bp_status status = archive_record_head(archive, index, &entry, &head, error);
+	return status ? status : archive_entry_load(archive, &entry, &head, layers, out, error);
+}
+
+bp_status archive_entry_origin(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                               struct origin *out, bp_error *error)
+{
+	const struct record_section *section = record_origin_find(head);
+	uint8_t bytes[ORIGIN_BYTES];
+	*out = (struct origin){.kind = ORIGIN_MERL};
+	if (!section)
+		return BP_OK;
+	const uint64_t at = entry->offset + section->offset;
+	bp_status status = archive_read(archive, at, bytes, sizeof bytes, error);
+	if (!status && bytes_crc32(bytes, sizeof bytes) != section->crc32)
+		status = error_set(error, BP_ERROR_CHECKSUM, at, "the checksum of a section of type %u differs", section->type);
+	return status ? status : error_shift(record_origin_parse(bytes, out, error), at, error);
 }

@@ -1,18 +1,15 @@
 #include "recover.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "bytes.h"
 #include "codec/record.h"
 #include "error.h"
 #include "memory.h"
 #include "index.h"
+#include "system.h"
 #include "writer.h"
 
 /* A material that was seen: a record (offset > 0), or only its name in the index. */
@@ -24,7 +21,7 @@ struct seen {
 };
 
 struct scan {
-	int fd;
+	struct system_file *file;
 	const char *path;
 	uint64_t file_bytes;
 	recover_report_fn *report;
@@ -39,25 +36,18 @@ struct scan {
 /* Reads what is there of `count` bytes at `offset`; a bad block of the disk reads as zeros up to the next 4096. */
 static size_t scan_read(const struct scan *scan, uint64_t offset, uint8_t *bytes, size_t count)
 {
-	size_t done = 0;
+	size_t done = 0, got;
 	if (offset >= scan->file_bytes)
 		return 0;
 	if (count > scan->file_bytes - offset)
 		count = (size_t)(scan->file_bytes - offset);
-	while (done < count) {
-		ssize_t got = pread(scan->fd, bytes + done, count - done, (off_t)(offset + done));
-		if (got < 0 && errno == EINTR)
-			continue;
-		if (got == 0)
-			break;
-		if (got < 0) {
-			size_t hole = 4096 - (size_t)((offset + done) % 4096);
-			got = (ssize_t)(hole < count - done ? hole : count - done);
-			memset(bytes + done, 0, (size_t)got);
-		}
-		done += (size_t)got;
+	while (system_file_read(scan->file, offset + done, bytes + done, count - done, &got, NULL) != BP_OK) {
+		done += got;
+		const size_t hole = 4096 - (size_t)((offset + done) % 4096), zeros = hole < count - done ? hole : count - done;
+		memset(bytes + done, 0, zeros);
+		done += zeros;
 	}
-	return done;
+	return done + got;
 }
 
 static bp_status seen_add(struct scan *scan, const char *name, uint64_t offset, uint32_t bytes, bool intact, bp_error *error)
@@ -246,15 +236,12 @@ static void nameless_tell(const struct scan *scan, struct recovery *out)
 
 static bp_status scan_open(struct scan *scan, const char *damaged, bp_error *error)
 {
-	struct stat found;
+	bp_error why;
+	const bp_status status = system_file_open(damaged, &scan->file, &scan->file_bytes, &why);
 	scan->path = damaged;
-	scan->fd = open(damaged, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-	if (scan->fd < 0 || fstat(scan->fd, &found) != 0)
-		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot open: %s", damaged, strerror(errno));
-	if (!S_ISREG(found.st_mode))
-		return error_set(error, BP_ERROR_NOT_OURS, BP_NO_OFFSET, "%s: not an archive: not a regular file", damaged);
-	scan->file_bytes = (uint64_t)found.st_size;
-	return BP_OK;
+	return status ? error_set(error, status, BP_NO_OFFSET, status == BP_ERROR_NOT_OURS ? "%s: not an archive: %s" : "%s: %s",
+	                          damaged, why.message)
+	              : BP_OK;
 }
 
 bp_status archive_recover(const char *damaged, const char *path, recover_report_fn *report, void *user, struct recovery *out,
@@ -292,8 +279,7 @@ bp_status archive_recover(const char *damaged, const char *path, recover_report_
 		*out = recovery;
 out:
 	archive_writer_discard(writer);
-	if (scan->fd >= 0)
-		close(scan->fd);
+	system_file_close(scan->file);
 	free(scan->seen);
 	byte_buffer_free(&scan->names);
 	free(scan);

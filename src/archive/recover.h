@@ -16,7 +16,7 @@ struct recovery {
 
 /*
  * Is told of each material that is lost (with the offset of the damage where known) and of each second copy that is not saved;
- * once, without a name, of those that the header alone tells of.
+ * once, without a name, of those that the header alone tells of. NULL: nobody is told.
  */
 typedef void recover_report_fn(void *user, const char *material, const bp_error *why);
 

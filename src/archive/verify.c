@@ -3,6 +3,8 @@
  * pages, that records follow each other without gap in name order, and every checksum.
  */
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,6 +41,22 @@ static void problem_report(struct walk *walk, const char *material, const bp_err
 	walk->ended = walk->report && walk->report(walk->user, &problem) != 0;
 }
 
+/* What is wrong at `offset` of the file; material NULL: the header or the index. */
+static void problem_tell(struct walk *walk, const char *material, uint64_t offset, const char *format, ...)
+	__attribute__((format(printf, 4, 5)));
+
+static void problem_tell(struct walk *walk, const char *material, uint64_t offset, const char *format, ...)
+{
+	bp_error error;
+	char text[2 * sizeof error.message];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(text, sizeof text, format, arguments);
+	va_end(arguments);
+	error_set(&error, BP_ERROR_CORRUPT, offset, "%s", text);
+	problem_report(walk, material, &error);
+}
+
 /* Every value of the expanded layer is finite and not negative. */
 static bp_status layer_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                              uint32_t layers, struct expansion *table, bp_error *error)
@@ -49,17 +67,17 @@ static bp_status layer_check(const struct bp_archive *archive, const struct inde
 	if (!status)
 		status = model_expand(model, 0, table, error);
 	model_free(model);
-	if (!status && !(table->unit > 0 && isfinite(table->unit)))
-		status =
-			error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: the unit of its values is %g", layers - 1, table->unit);
-	for (int c = 0; !status && c < 3; c++)
+	if (status)
+		return status;
+	if (!(table->unit > 0 && isfinite(table->unit)))
+		return error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: the unit of its values is %g", layers - 1,
+		                 table->unit);
+	for (int c = 0; c < 3; c++)
 		for (size_t i = 0; i < cells; i++)
-			if (!(table->rgb[c][i] >= 0 && isfinite(table->rgb[c][i]))) {
-				status = error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: channel %d of cell %zu decodes to %g",
-				                   layers - 1, c, i, (double)table->rgb[c][i]);
-				break;
-			}
-	return status;
+			if (!(table->rgb[c][i] >= 0 && isfinite(table->rgb[c][i])))
+				return error_set(error, BP_ERROR_CORRUPT, entry->offset, "layer %u: channel %d of cell %zu decodes to %g",
+				                 layers - 1, c, i, (double)table->rgb[c][i]);
+	return BP_OK;
 }
 
 static bp_status layers_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
@@ -81,11 +99,9 @@ static void record_check(struct walk *walk, const struct index_entry *entry)
 	struct record_head head;
 	uint8_t *record = NULL;
 	bp_error error = {0};
-	if (walk->next_offset && entry->offset != walk->next_offset) {
-		error_set(&error, BP_ERROR_CORRUPT, walk->next_offset, "a record should begin here, the index has it at %llu",
-		          (unsigned long long)entry->offset);
-		problem_report(walk, entry->name, &error);
-	}
+	if (walk->next_offset && entry->offset != walk->next_offset)
+		problem_tell(walk, entry->name, walk->next_offset, "a record should begin here, the index has it at %llu",
+		             (unsigned long long)entry->offset);
 	/* After an entry that points nowhere the next one may be right again. */
 	walk->next_offset = entry->offset <= archive_header(walk->archive)->index_offset ? entry->offset + entry->record_bytes : 0;
 	if (archive_entry_record(walk->archive, entry, &head, &record, &error) != BP_OK) {
@@ -107,18 +123,13 @@ static void leaf_check(struct walk *walk, const struct index_page *leaf)
 {
 	uint64_t page_offset = archive_header(walk->archive)->index_offset + (uint64_t)leaf->number * PAGE_BYTES;
 	struct index_entry entry = {0};
-	bp_error error;
 	uint32_t bytes;
 	const char *name = index_entry_name(leaf, 0, &bytes);
-	if (walk->last_name_bytes && name_compare(walk->last_name, walk->last_name_bytes, name, bytes) >= 0) {
-		error_set(&error, BP_ERROR_CORRUPT, page_offset, "index page %u is not in name order", leaf->number);
-		problem_report(walk, NULL, &error);
-	}
-	if (leaf->first_ordinal != walk->next_ordinal) {
-		error_set(&error, BP_ERROR_CORRUPT, page_offset, "index page %u begins with material %llu, expected %llu", leaf->number,
-		          (unsigned long long)leaf->first_ordinal, (unsigned long long)walk->next_ordinal);
-		problem_report(walk, NULL, &error);
-	}
+	if (walk->last_name_bytes && name_compare(walk->last_name, walk->last_name_bytes, name, bytes) >= 0)
+		problem_tell(walk, NULL, page_offset, "index page %u is not in name order", leaf->number);
+	if (leaf->first_ordinal != walk->next_ordinal)
+		problem_tell(walk, NULL, page_offset, "index page %u begins with material %llu, expected %llu", leaf->number,
+		             (unsigned long long)leaf->first_ordinal, (unsigned long long)walk->next_ordinal);
 	for (uint32_t i = 0; i < leaf->count && !walk->ended; i++) {
 		index_leaf_entry(leaf, i, &entry);
 		record_check(walk, &entry);
@@ -154,22 +165,15 @@ static void page_walk(struct walk *walk, const struct page_expect *expect, uint6
 /* What the whole walk must have come to. */
 static void totals_check(struct walk *walk, const struct archive_header *header)
 {
-	bp_error error;
-	if (walk->next_ordinal != header->count) {
-		error_set(&error, BP_ERROR_CORRUPT, header->index_offset, "the index holds %llu materials, the header says %llu",
-		          (unsigned long long)walk->next_ordinal, (unsigned long long)header->count);
-		problem_report(walk, NULL, &error);
-	}
-	if (walk->pages_seen != header->page_count && !walk->status) {
-		error_set(&error, BP_ERROR_CORRUPT, header->index_offset, "the index uses %llu of its %u pages",
-		          (unsigned long long)walk->pages_seen, header->page_count);
-		problem_report(walk, NULL, &error);
-	}
-	if (walk->next_offset && walk->next_offset != header->index_offset) {
-		error_set(&error, BP_ERROR_CORRUPT, walk->next_offset, "the records end here, the index begins at %llu",
-		          (unsigned long long)header->index_offset);
-		problem_report(walk, NULL, &error);
-	}
+	if (walk->next_ordinal != header->count)
+		problem_tell(walk, NULL, header->index_offset, "the index holds %llu materials, the header says %llu",
+		             (unsigned long long)walk->next_ordinal, (unsigned long long)header->count);
+	if (walk->pages_seen != header->page_count && !walk->status)
+		problem_tell(walk, NULL, header->index_offset, "the index uses %llu of its %u pages",
+		             (unsigned long long)walk->pages_seen, header->page_count);
+	if (walk->next_offset && walk->next_offset != header->index_offset)
+		problem_tell(walk, NULL, walk->next_offset, "the records end here, the index begins at %llu",
+		             (unsigned long long)header->index_offset);
 }
 
 bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_problem_fn *report, void *user, bp_error *error)

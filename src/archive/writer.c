@@ -16,45 +16,30 @@ enum { BUFFER_BYTES = 1 << 18 };
 
 struct archive_writer {
 	struct output_file file;
-	bool in_memory; /* then the bytes go to: */
-	struct byte_buffer memory;
+	bool in_memory;             /* there is no file */
+	struct byte_buffer pending; /* not yet in the file; all of the archive where there is none */
 	struct index_builder index;
-	uint64_t file_bytes; /* written so far, the buffer included */
-	size_t buffered;
+	uint64_t file_bytes;                       /* written so far, pending ones included */
 	char last_name[RECORD_NAME_BYTES_MAX + 1]; /* "" before the first record */
-	uint8_t buffer[BUFFER_BYTES];
 };
 
-static bp_status bytes_put(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
+/* What is pending goes to the file, if that is as much as `least`. */
+static bp_status pending_flush(struct archive_writer *writer, size_t least, bp_error *error)
 {
-	if (writer->in_memory) {
-		write_bytes(&writer->memory, bytes, count);
-		return writer->memory.failed ? error_memory(error, writer->memory.count + count) : BP_OK;
-	}
-	return output_file_write(&writer->file, bytes, count, error);
-}
-
-static bp_status buffer_flush(struct archive_writer *writer, bp_error *error)
-{
-	size_t count = writer->buffered;
-	writer->buffered = 0;
-	return bytes_put(writer, writer->buffer, count, error);
+	const size_t count = writer->pending.count;
+	if (writer->pending.failed)
+		return error_memory(error, count);
+	if (writer->in_memory || count < least)
+		return BP_OK;
+	writer->pending.count = 0;
+	return output_file_write(&writer->file, writer->pending.bytes, count, error);
 }
 
 static bp_status writer_append(struct archive_writer *writer, const uint8_t *bytes, size_t count, bp_error *error)
 {
-	bp_status status = BP_OK;
-	if (count > BUFFER_BYTES - writer->buffered)
-		status = buffer_flush(writer, error);
-	if (!status && count > BUFFER_BYTES) {
-		status = bytes_put(writer, bytes, count, error);
-	} else if (!status) {
-		memcpy(writer->buffer + writer->buffered, bytes, count);
-		writer->buffered += count;
-	}
-	if (!status)
-		writer->file_bytes += count;
-	return status;
+	write_bytes(&writer->pending, bytes, count);
+	writer->file_bytes += count;
+	return pending_flush(writer, BUFFER_BYTES, error);
 }
 
 /* path NULL: in memory */
@@ -71,15 +56,15 @@ static bp_status writer_open(const char *path, struct archive_writer **out, bp_e
 		output_file_sweep(path, ARCHIVE_MAGIC, ARCHIVE_MAGIC_BYTES);
 		status = output_file_open(path, OUTPUT_REPLACE, &writer->file, error);
 	}
+	if (!status)
+		status = writer_append(writer, header_to_come, sizeof header_to_come, error);
 	if (!status) /* at once, so that the next writer knows it for ours if this one is killed */
-		status = bytes_put(writer, header_to_come, sizeof header_to_come, error);
-	writer->file_bytes = sizeof header_to_come;
-	if (status) {
+		status = pending_flush(writer, 0, error);
+	if (status)
 		archive_writer_discard(writer);
-		return status;
-	}
-	*out = writer;
-	return BP_OK;
+	else
+		*out = writer;
+	return status;
 }
 
 bp_status archive_writer_open(const char *path, struct archive_writer **out, bp_error *error)
@@ -116,26 +101,21 @@ static bp_status header_put(struct archive_writer *writer, const struct archive_
 	uint8_t bytes[ARCHIVE_HEADER_BYTES];
 	archive_header_write(header, bytes);
 	if (writer->in_memory) {
-		memcpy(writer->memory.bytes, bytes, sizeof bytes);
+		memcpy(writer->pending.bytes, bytes, sizeof bytes);
 		return BP_OK;
 	}
 	if (lseek(writer->file.fd, 0, SEEK_SET) != 0)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot seek: %s", writer->file.target, strerror(errno));
-	return bytes_put(writer, bytes, sizeof bytes, error);
+	return output_file_write(&writer->file, bytes, sizeof bytes, error);
 }
 
 /* Index and header: the archive is whole then, where it is. */
 static bp_status writer_end(struct archive_writer *writer, bp_error *error)
 {
-	struct archive_header header = {
-		.major = ARCHIVE_MAJOR,
-		.minor = ARCHIVE_MINOR,
-		.count = writer->index.count,
-		.index_offset = writer->file_bytes,
-	};
+	struct archive_header header = {.count = writer->index.count, .index_offset = writer->file_bytes};
 	bp_status status = index_write(&writer->index, page_append, writer, &header.page_count, &header.depth, error);
 	if (!status)
-		status = buffer_flush(writer, error);
+		status = pending_flush(writer, 0, error);
 	header.file_bytes = writer->file_bytes;
 	return status ? status : header_put(writer, &header, error);
 }
@@ -153,9 +133,9 @@ bp_status archive_writer_commit_memory(struct archive_writer *writer, uint8_t **
 {
 	const bp_status status = writer_end(writer, error);
 	if (!status) {
-		*bytes = writer->memory.bytes;
-		*count = writer->memory.count;
-		writer->memory = (struct byte_buffer){0};
+		*bytes = writer->pending.bytes;
+		*count = writer->pending.count;
+		writer->pending = (struct byte_buffer){0};
 	}
 	archive_writer_discard(writer);
 	return status;
@@ -166,7 +146,7 @@ void archive_writer_discard(struct archive_writer *writer)
 	if (!writer)
 		return;
 	output_file_discard(&writer->file);
-	byte_buffer_free(&writer->memory);
-	index_builder_free(&writer->index);
+	byte_buffer_free(&writer->pending);
+	byte_buffer_free(&writer->index.entries);
 	free(writer);
 }

@@ -1,20 +1,7 @@
 #include "angles.h"
 
-#include <stdlib.h>
-
-#include "error.h"
-
-bp_status centre_tables_alloc(struct lattice_dims dims, struct centre_tables *out, bp_error *error)
+void centre_tables_fill(struct lattice_dims dims, struct centre_tables *out)
 {
-	size_t count = 2 * (size_t)dims.theta_h + 2 * (size_t)dims.theta_d + dims.phi_d;
-	double *values = malloc(count * sizeof *values);
-
-	if (!values)
-		return error_memory(error, count * sizeof *values);
-	*out = (struct centre_tables){.dims = dims, .cos_h = values, .sin_h = values + dims.theta_h};
-	out->cos_d = out->sin_h + dims.theta_h;
-	out->sin_d = out->cos_d + dims.theta_d;
-	out->cos_p = out->sin_d + dims.theta_d;
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
 		double s = (i + 0.5) / dims.theta_h;
 		out->cos_h[i] = cos(s * s * M_PI_2);
@@ -26,13 +13,6 @@ bp_status centre_tables_alloc(struct lattice_dims dims, struct centre_tables *ou
 	}
 	for (uint32_t k = 0; k < dims.phi_d; k++)
 		out->cos_p[k] = cos((k + 0.5) / dims.phi_d * M_PI);
-	return BP_OK;
-}
-
-void centre_tables_free(struct centre_tables *tables)
-{
-	if (tables)
-		free(tables->cos_h);
 }
 
 static double below(double x, uint32_t extent)

@@ -17,14 +17,13 @@ struct cell_angles {
 	double cos_d;        /* of theta_d = the angle between either direction and the half vector */
 };
 
-/* cos and sin of every centre along each axis; freed with centre_tables_free. */
+/* cos and sin of every centre along each axis. */
 struct centre_tables {
-	struct lattice_dims dims;
-	double *cos_h, *sin_h, *cos_d, *sin_d, *cos_p;
+	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX];
+	double cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX], cos_p[LATTICE_EXTENT_MAX];
 };
 
-bp_status centre_tables_alloc(struct lattice_dims dims, struct centre_tables *out, bp_error *error);
-void centre_tables_free(struct centre_tables *tables);
+void centre_tables_fill(struct lattice_dims dims, struct centre_tables *out);
 
 /*
  * Rusinkiewicz (1998), with phi_h = 0: the half vector is (sin_h, 0, cos_h), wi is (theta_d, phi_d)

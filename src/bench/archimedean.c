@@ -9,31 +9,6 @@
 
 static const double EDGE = 1e-6; /* a single evaluation keeps this far from the corners */
 
-bp_status archimedean_alloc(struct lattice_dims dims, struct archimedean_state **out, bp_error *error)
-{
-	const size_t per_channel = (size_t)dims.theta_h + dims.theta_d + dims.phi_d;
-	struct archimedean_state *state = calloc(1, sizeof *state);
-
-	if (!state)
-		return error_memory(error, sizeof *state);
-	state->dims = dims;
-	state->marginals = calloc(3 * per_channel, sizeof *state->marginals);
-	state->edges = calloc(3 * (per_channel + 3), sizeof *state->edges);
-	if (!state->marginals || !state->edges) {
-		archimedean_free(state);
-		return error_memory(error, 3 * (per_channel + 3) * (sizeof(float) + sizeof(double)));
-	}
-	for (size_t c = 0, at = 0, edge = 0; c < 3; c++)
-		for (int axis = 0; axis < 3; axis++) {
-			state->channel[c].marginal[axis] = state->marginals + at;
-			state->channel[c].edge[axis] = state->edges + edge;
-			at += archimedean_extent(dims, axis);
-			edge += archimedean_extent(dims, axis) + 1;
-		}
-	*out = state;
-	return BP_OK;
-}
-
 void archimedean_accumulate(struct lattice_dims dims, struct archimedean_channel *channel)
 {
 	for (int axis = 0; axis < 3; axis++) {
@@ -45,17 +20,6 @@ void archimedean_accumulate(struct lattice_dims dims, struct archimedean_channel
 		for (uint32_t n = 1; n <= extent; n++)
 			edge[n] = edge[extent] > 0 && n < extent ? edge[n] / edge[extent] : (double)n / extent; /* black: anything will do */
 	}
-}
-
-void archimedean_free(void *opaque)
-{
-	struct archimedean_state *state = opaque;
-
-	if (!state)
-		return;
-	free(state->marginals);
-	free(state->edges);
-	free(state);
 }
 
 /* F or 1 - F. */
@@ -178,5 +142,5 @@ const struct baseline BASELINE_ARCHIMEDEAN = {
 	.parameters = archimedean_parameters,
 	.expand = archimedean_expand,
 	.evaluate = archimedean_evaluate,
-	.free_state = archimedean_free,
+	.free_state = free,
 };

@@ -29,15 +29,13 @@ struct archimedean_channel {
 	enum archimedean_family family;
 	unsigned turned; /* bit a: axis a is turned round */
 	float alpha, diffuse, scale;
-	float *marginal[3]; /* mean 1 (all 0 for a black channel), per axis: H, D, P values */
-	double *edge[3];    /* F where each cell begins, and 1; derived from the marginal: H + 1, D + 1, P + 1 values */
+	float marginal[3][LATTICE_EXTENT_MAX];  /* mean 1 (all 0 for a black channel), per axis: H, D, P values */
+	double edge[3][LATTICE_EXTENT_MAX + 1]; /* F where each cell begins, and 1; derived from the marginal */
 };
 
 struct archimedean_state {
 	struct lattice_dims dims;
 	struct archimedean_channel channel[3];
-	float *marginals;
-	double *edges;
 };
 
 static inline uint32_t archimedean_extent(struct lattice_dims dims, int axis)
@@ -45,10 +43,8 @@ static inline uint32_t archimedean_extent(struct lattice_dims dims, int axis)
 	return axis == 0 ? dims.theta_h : axis == 1 ? dims.theta_d : dims.phi_d;
 }
 
-/* An empty state whose arrays are allocated, and what follows from its marginals. */
-bp_status archimedean_alloc(struct lattice_dims dims, struct archimedean_state **out, bp_error *error);
+/* Fills the edges from the marginals. */
 void archimedean_accumulate(struct lattice_dims dims, struct archimedean_channel *channel);
-void archimedean_free(void *state); /* NULL is allowed */
 
 /*
  * The edges of the cells along each axis, turned where the axis is: H + 1, D + 1, P + 1, out[axis] pointing into `room` of

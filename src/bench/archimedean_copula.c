@@ -1,6 +1,7 @@
 #include "archimedean_copula.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 double archimedean_density(enum archimedean_family family, double alpha, double u, double v, double w)
 {
@@ -52,20 +53,17 @@ double copula_value(const struct copula *copula, struct copula_edge u, struct co
 double copula_cell_mass(const struct copula *copula, const struct copula_edge u[2], const struct copula_edge v[2],
                         const struct copula_edge w[2])
 {
+	const bool frank = copula->family == ARCHIMEDEAN_FRANK;
 	double sum = 0, odd = 1, even = 1;
 
-	if (copula->family == ARCHIMEDEAN_FRANK) { /* one logarithm for the eight: each 1 - s is at least e^-alpha */
-		for (int corner = 0; corner < 8; corner++) {
-			const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
-			*((a + b + c) & 1 ? &odd : &even) *= frank_rest(copula, u[a], v[b], w[c]);
-		}
-		sum = log(even / odd) / copula->alpha;
-	} else {
-		for (int corner = 0; corner < 8; corner++) {
-			const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
+	for (int corner = 0; corner < 8; corner++) {
+		const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2, is_odd = (a + b + c) & 1;
+		if (frank) {
+			*(is_odd ? &odd : &even) *= frank_rest(copula, u[a], v[b], w[c]);
+		} else {
 			const double value = copula_value(copula, u[a], v[b], w[c]);
-			sum += (a + b + c) & 1 ? value : -value;
+			sum += is_odd ? value : -value;
 		}
 	}
-	return sum;
+	return frank ? log(even / odd) / copula->alpha : sum; /* one logarithm for the eight: each 1 - s is at least e^-alpha */
 }

@@ -260,18 +260,19 @@ bp_status archimedean_fit(const struct baseline *self, const struct bench_materi
 	const uint32_t stride_d = lattice->dims.theta_d >= 60 ? STRIDE_D : 1, stride_p = lattice->dims.phi_d >= 60 ? STRIDE_P : 1;
 	uint32_t *source = malloc(cells * sizeof *source);
 	struct lobe_sample sample = {0};
-	struct archimedean_state *state = NULL;
+	struct archimedean_state *state = calloc(1, sizeof *state);
 	struct search *search = malloc(sizeof *search);
 	struct axis_means *means = malloc(sizeof *means);
 	bp_status status;
 
 	(void)self;
 	gsl_set_error_handler_off();
-	if (!source || !search || !means) {
-		status = error_memory(error, cells * sizeof *source + sizeof *search + sizeof *means);
+	if (!source || !state || !search || !means) {
+		status = error_memory(error, cells * sizeof *source + sizeof *state + sizeof *search + sizeof *means);
 		goto out;
 	}
-	if ((status = lattice_fill_sources(lattice, source, error)) || (status = archimedean_alloc(lattice->dims, &state, error)) ||
+	state->dims = lattice->dims;
+	if ((status = lattice_fill_sources(lattice, source, error)) ||
 	    (status = lobe_sample_take(lattice, stride_d, stride_p, &sample, error)))
 		goto out;
 	*search = (struct search){.sample = &sample, .dims = lattice->dims, .means = means};
@@ -284,7 +285,7 @@ bp_status archimedean_fit(const struct baseline *self, const struct bench_materi
 	state = NULL;
 out:
 	lobe_sample_free(&sample);
-	archimedean_free(state);
+	free(state);
 	free(means);
 	free(search);
 	free(source);

@@ -22,6 +22,9 @@ struct bench_material {
 	int effort;          /* 1..9, for those that know efforts */
 };
 
+/* One evaluation: unit vectors in the local frame (normal = +z), both above the horizon; rgb in 1/sr. */
+typedef void evaluate_fn(const void *state, const double wi[3], const double wo[3], double rgb[3]);
+
 struct baseline {
 	const char *name;      /* one word, the row's key in the table */
 	const char *reference; /* author and year, or library */
@@ -42,12 +45,8 @@ struct baseline {
 	 */
 	bp_status (*prepare)(void *state, const struct expansion *table, bp_error *error);
 
-	/*
-	 * One evaluation: unit vectors in the local frame (normal = +z), both above the horizon; rgb in 1/sr.
-	 * NULL: nothing short of decoding the whole can be evaluated; the benchmark then times a
-	 * nearest look-up in the decoded table.
-	 */
-	void (*evaluate)(const void *state, const double wi[3], const double wo[3], double rgb[3]);
+	/* NULL: nothing short of decoding the whole can be evaluated; the benchmark then times a nearest look-up in the table. */
+	evaluate_fn *evaluate;
 	void (*free_state)(void *state); /* NULL is allowed */
 };
 

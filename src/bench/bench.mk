@@ -22,11 +22,12 @@ BENCH_LABEL  ?= $(if $(BENCH_DATA),MERL files in $(BENCH_DATA),demo set of brdfp
 BENCH_FLAGS  ?=
 # where scripts/demo.sh puts it too
 BENCH_DEMO   := $(BUILD)/demo/materials
-$(BUILD)/bench/brdfpack-bench: $(BUILD)/src/bench/main.o $(BENCH_PARTS)
-	@[ "$(BENCH_READY)" = yes ] || { echo "the benchmark needs: apt-get install $(BENCH_DEBIAN)"; exit 1; }
+$(BUILD)/bench/brdfpack-bench: $(BUILD)/src/bench/main.o
+$(BUILD)/bench/brdfpack-bench-eval: $(BUILD)/src/bench/eval_main.o
+$(BUILD)/bench/brdfpack-bench $(BUILD)/bench/brdfpack-bench-eval: $(BENCH_PARTS) | bench-ready
 	@mkdir -p $(@D)
 	$(call SAY,LD    $@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $< $(BENCH_PARTS) $(BENCH_LIBS) $(TOOL_LIBS) $(LIBRARY_LIBS)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $(filter %main.o,$^) $(BENCH_PARTS) $(BENCH_LIBS) $(TOOL_LIBS) $(LIBRARY_LIBS)
 
 bench-ready:
 	@[ "$(BENCH_READY)" = yes ] || { echo "the benchmark needs: apt-get install $(BENCH_DEBIAN)"; exit 1; }
@@ -40,10 +41,6 @@ bench-methods bench-quick: bench-ready all
 	$(Q)scripts/bench_plot.sh $(BENCH_OUT)/$@.tsv $(BENCH_OUT)/$@
 
 # Load, evaluate and sample beside the raw table: the same data, packed first. BENCH_EVAL_FLAGS=-s: the spread of sampling weights.
-$(BUILD)/bench/brdfpack-bench-eval: $(BUILD)/src/bench/eval_main.o $(BUILD)/bench.a $(BUILD)/internal.a
-	@mkdir -p $(@D)
-	$(call SAY,LD    $@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARY_LIBS)
 BENCH_EVAL_FLAGS ?=
 bench-eval: bench-ready bench-data $(BUILD)/bench/brdfpack-bench-eval
 	$(Q)[ $(BENCH_OUT)/eval.bpk -nt $(BUILD)/brdfpack ] || { mkdir -p $(BENCH_OUT) && $(BUILD)/brdfpack build -q -o $(BENCH_OUT)/eval.bpk $(or $(BENCH_DATA),$(BUILD)/demo); }

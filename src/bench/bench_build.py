@@ -9,7 +9,6 @@ the ratio to cat of the same run, and the largest process's peak memory (at leas
 which each is started). The files are in the page cache; with --cold reading and building by two workers are timed
 once more with the files dropped from it before, each against the other.
 """
-import argparse
 import glob
 import os
 import shutil
@@ -49,14 +48,9 @@ def ratio_of(runs, others):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--label", default="demo set")
+    parser = bench_head.options_parser(5)
     parser.add_argument("--profile", default=None)
-    parser.add_argument("--names", help="only the materials that this file lists")
     parser.add_argument("--cold", action="store_true", help="also with the files dropped from the page cache")
-    parser.add_argument("--any-lattice", action="store_true", help="tables of other extents than MERL's (for tests)")
-    parser.add_argument("folder")
     options = parser.parse_args()
 
     files = bench_head.materials(options.folder, options.names)

@@ -1,4 +1,5 @@
 """What every benchmark prints on top: machine, compiler, commit, command and data."""
+import argparse
 import glob
 import os
 import platform
@@ -47,6 +48,17 @@ def run(command):
     if process.returncode != 0:
         sys.exit("%s: exit code %d" % (" ".join(command[:4]), process.returncode))
     return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def options_parser(runs):
+    """What all scripts over a folder of materials are told; `runs` unless told otherwise."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--runs", type=int, default=runs)
+    parser.add_argument("--label", default="demo set")
+    parser.add_argument("--names", help="only the materials that this file lists")
+    parser.add_argument("--any-lattice", action="store_true", help="tables of other extents than MERL's (for tests)")
+    parser.add_argument("folder")
+    return parser
 
 
 def lattice_flags(any_lattice):

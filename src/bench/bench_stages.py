@@ -8,7 +8,6 @@ once (plain read, 128 KiB at a time), then packs them with each profile by one w
 `build --json` says. Times are processor milliseconds per material: the median of the runs, then the mean over the
 materials, so that the stages add up.
 """
-import argparse
 import json
 import os
 import statistics
@@ -45,13 +44,7 @@ def per_material(runs):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--label", default="demo set")
-    parser.add_argument("--names", help="only the materials that this file lists")
-    parser.add_argument("--any-lattice", action="store_true", help="tables of other extents than MERL's (for tests)")
-    parser.add_argument("folder")
-    options = parser.parse_args()
+    options = bench_head.options_parser(3).parse_args()
     files = bench_head.materials(options.folder, options.names)
     reading, runs = [], {profile: [] for profile in PROFILES}
     with tempfile.TemporaryDirectory() as scratch:

@@ -1,109 +1,65 @@
 #include "inputs.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-void inputs_name(const char *path, char *out, size_t capacity)
+#include "tool/whole_file.h"
+
+enum { LIST_BYTES_MAX = 1 << 20 };
+
+static bool is_listed(void *user, const char *name)
 {
-	const char *slash = strrchr(path, '/');
-
-	snprintf(out, capacity, "%s", slash ? slash + 1 : path);
-	char *dot = strrchr(out, '.');
-	if (dot && dot != out)
-		*dot = 0;
-}
-
-static bool add_path(struct inputs *inputs, const char *folder, const char *name)
-{
-	char path[4096];
-
-	if (inputs->count == MATERIALS_MAX) {
-		fprintf(stderr, "brdfpack-bench: more than %d materials\n", MATERIALS_MAX);
-		return false;
-	}
-	snprintf(path, sizeof path, "%s%s%s", folder ? folder : "", folder ? "/" : "", name);
-	inputs->paths[inputs->count] = strdup(path);
-	return inputs->paths[inputs->count++] != NULL;
-}
-
-static bool complain(const char *path)
-{
-	fprintf(stderr, "brdfpack-bench: %s: %s\n", path, strerror(errno));
+	const size_t bytes = strlen(name);
+	for (const char *line = user; *line; line += strcspn(line, "\n"), line += *line == '\n')
+		if (!strncmp(line, name, bytes) && strchr("\t\r\n", line[bytes]))
+			return true;
 	return false;
 }
 
-bool inputs_add(struct inputs *inputs, const char *path)
+static void notice_print(void *user, enum source_notice kind, const char *path, const char *reason)
 {
-	struct stat info;
-	DIR *folder;
-	struct dirent *entry;
-	bool good = true;
-
-	if (stat(path, &info))
-		return complain(path);
-	if (!S_ISDIR(info.st_mode))
-		return add_path(inputs, NULL, path);
-	if (!(folder = opendir(path)))
-		return complain(path);
-	while (good && (entry = readdir(folder))) {
-		size_t length = strlen(entry->d_name);
-		if (length > 7 && !strcmp(entry->d_name + length - 7, ".binary"))
-			good = add_path(inputs, path, entry->d_name);
-	}
-	closedir(folder);
-	return good;
+	(void)user, (void)kind;
+	fprintf(stderr, "brdfpack-bench: %s: %s\n", path, reason);
 }
 
-static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
-
-void inputs_sort(struct inputs *inputs) { qsort(inputs->paths, (size_t)inputs->count, sizeof *inputs->paths, by_name); }
-
-bool inputs_keep_listed(struct inputs *inputs, const char *list)
+bool inputs_find(char **paths, int count, const char *list, struct source_list *out)
 {
-	char line[512], name[256];
-	bool keep[MATERIALS_MAX] = {false};
-	FILE *file = fopen(list, "r");
-	int kept = 0;
+	char *names = NULL;
+	size_t bytes, inside = 0;
+	bp_error error;
 
-	if (!file)
-		return complain(list);
-	while (fgets(line, sizeof line, file)) {
-		line[strcspn(line, "\t\r\n")] = 0;
-		for (int n = 0; n < inputs->count; n++) {
-			inputs_name(inputs->paths[n], name, sizeof name);
-			keep[n] |= !strcmp(name, line);
-		}
+	*out = (struct source_list){0};
+	if (list && whole_file_read(list, LIST_BYTES_MAX, &names, &bytes, &error)) {
+		notice_print(NULL, SOURCE_DAMAGED, list, error.message);
+		return false;
 	}
-	fclose(file);
-	for (int n = 0; n < inputs->count; n++)
-		if (keep[n])
-			inputs->paths[kept++] = inputs->paths[n];
-		else
-			free(inputs->paths[n]);
-	inputs->count = kept;
-	return true;
+	const struct source_options options = {.notice = notice_print, .wanted = list ? is_listed : NULL, .user = names};
+	const bp_status status = source_scan((const char *const *)paths, (size_t)count, &options, out, &error);
+	free(names);
+	if (status) {
+		fprintf(stderr, "brdfpack-bench: %s\n", error.message);
+		return false;
+	}
+	for (size_t n = 0; n < out->item_count; n++)
+		inside += out->items[n].member != NULL;
+	if (inside + out->stream_count == 0 && out->item_count <= MATERIALS_MAX)
+		return true;
+	fprintf(stderr, "brdfpack-bench: %s\n", inside + out->stream_count ? "a container: unpack it first" : "too many materials");
+	source_list_free(out);
+	return false;
 }
 
-void inputs_thin(struct inputs *inputs, int count)
+void inputs_thin(struct source_list *inputs, size_t count)
 {
-	int kept = 0;
+	const size_t all = inputs->item_count;
 
-	if (inputs->count <= count)
+	if (all <= count)
 		return;
-	for (int n = 0; n < inputs->count; n++)
-		if (kept < count && n == kept * (inputs->count - 1) / (count > 1 ? count - 1 : 1))
-			inputs->paths[kept++] = inputs->paths[n];
+	inputs->item_count = 0;
+	for (size_t n = 0; n < all; n++)
+		if (inputs->item_count < count && n == inputs->item_count * (all - 1) / (count > 1 ? count - 1 : 1))
+			inputs->items[inputs->item_count++] = inputs->items[n];
 		else
-			free(inputs->paths[n]);
-	inputs->count = kept;
-}
-
-void inputs_free(struct inputs *inputs)
-{
-	for (int n = 0; n < inputs->count; n++)
-		free(inputs->paths[n]);
+			source_item_clear(&inputs->items[n]);
 }

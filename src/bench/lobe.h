@@ -71,7 +71,7 @@ bp_status lobe_fit_variant(const struct baseline *self, const struct bench_mater
 size_t lobe_bytes(const void *state);
 size_t lobe_parameters(const void *state);
 bp_status lobe_expand(const void *state, struct expansion *out, bp_error *error);
-void lobe_evaluate(const void *state, const double wi[3], const double wo[3], double rgb[3]);
+evaluate_fn lobe_evaluate;
 
 #define LOBE_BASELINE(method, text, lobe_model, lobe_objective) \
 	{ \

@@ -35,15 +35,11 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 	struct centre_tables tables;
 	struct lobe_sample sample = {.unit = 0};
 	double weight_sum = 0;
-	bp_status status = centre_tables_alloc(dims, &tables, error);
 
-	if (status)
-		return status;
+	centre_tables_fill(dims, &tables);
 	sample.angles = malloc(bytes);
-	if (!sample.angles) {
-		status = error_memory(error, bytes);
-		goto out;
-	}
+	if (!sample.angles)
+		return error_memory(error, bytes);
 	sample.weight = (double *)(void *)(sample.angles + most);
 	for (int c = 0; c < 3; c++)
 		sample.rgb[c] = sample.weight + (size_t)(c + 1) * most;
@@ -67,9 +63,9 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 				sample.count++;
 			}
 	if (!sample.count) {
-		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
-		                   "no valid cell within 80 degrees of the normal: nothing to fit an analytic model to");
-		goto out;
+		free(sample.angles);
+		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
+		                 "no valid cell within 80 degrees of the normal: nothing to fit an analytic model to");
 	}
 	if (!(sample.unit > 0))
 		sample.unit = 1;
@@ -79,11 +75,7 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 			sample.rgb[c][n] /= sample.unit;
 	}
 	*out = sample;
-	sample.angles = NULL;
-out:
-	free(sample.angles);
-	centre_tables_free(&tables);
-	return status;
+	return BP_OK;
 }
 
 bp_status lobe_sample_make_relative(struct lobe_sample *sample, bp_error *error)
@@ -119,8 +111,6 @@ double nonnegative_pair(double pp, double pl, double ll, double py, double ly, d
 
 void lobe_sample_free(struct lobe_sample *sample)
 {
-	if (!sample)
-		return;
 	free(sample->angles);
 	free(sample->relative);
 }

@@ -8,6 +8,7 @@
 #include <zstd.h>
 
 #include "error.h"
+#include "merl/merl_file.h"
 #include "baseline.h"
 
 enum { ZLIB_LEVEL = 6, ZSTD_LEVEL = 9, XZ_LEVEL = 0 };
@@ -94,6 +95,10 @@ static bp_status lossless_fit(const struct baseline *self, const struct bench_ma
 
 	if (!state)
 		return error_memory(error, sizeof *state);
+	if (material->raw_bytes != merl_file_bytes(material->lattice->dims)) {
+		free(state);
+		return error_set(error, BP_ERROR_UNSUPPORTED, BP_NO_OFFSET, "not a MERL file");
+	}
 	*state = (struct lossless_state){
 		.codec = codec, .dims = material->lattice->dims, .plain_bytes = material->raw_bytes, .stream = malloc(capacity)};
 	if (!state->stream)

@@ -20,7 +20,7 @@ static const double EFFORTS[] = {1, 2, 3, 4, 5, 6, 7, 8, 9}, QUICK_EFFORTS[] = {
 
 static void print_head(FILE *out, const struct run *run, const char *label, int workers)
 {
-	fprintf(out, "# data: %s; %d materials\n", label, run->inputs.count);
+	fprintf(out, "# data: %s; %d materials\n", label, (int)run->inputs.item_count);
 	if (run->truth)
 		fprintf(out, "# figures against: the tables of the same names in %s\n", run->truth);
 	fprintf(out,
@@ -37,13 +37,9 @@ static void print_head(FILE *out, const struct run *run, const char *label, int 
 
 static void print_rows(FILE *out, const struct run *run, const struct row *rows, int count)
 {
-	char name[256];
-
 	row_print_header(out);
-	for (int n = 0; n < count; n++) {
-		inputs_name(run->inputs.paths[rows[n].material], name, sizeof name);
-		row_print(out, name, METHODS[rows[n].method].name, &rows[n]);
-	}
+	for (int n = 0; n < count; n++)
+		row_print(out, run->inputs.items[rows[n].material].name, METHODS[rows[n].method].name, &rows[n]);
 	for (int n = 0, next; n < count; n = next) {
 		for (next = n + 1; next < count && row_same_setting(&rows[next], &rows[n]);)
 			next++;
@@ -85,7 +81,7 @@ static int choose_numbers(const char *list, char option, double least, double mo
 
 static void usage(FILE *out)
 {
-	fprintf(out, "Usage: brdfpack-bench [options] FOLDER-OR-MERL-FILE...\n"
+	fprintf(out, "Usage: brdfpack-bench [options] FOLDER-OR-MEASURED-FILE...\n"
 	             "Run time against error of every method; a table of tab-separated values.\n"
 	             "  -o FILE   where the table goes (standard output)\n"
 	             "  -l TEXT   what the data are, for the table's head\n"
@@ -110,7 +106,7 @@ static bool run_and_print(struct run *run, int workers, const char *output, cons
 		fprintf(stderr, "brdfpack-bench: %s: %s\n", temporary, strerror(errno));
 		return false;
 	}
-	const int count = run_all(run, workers < run->inputs.count ? workers : run->inputs.count, &rows);
+	const int count = run_all(run, workers < (int)run->inputs.item_count ? workers : (int)run->inputs.item_count, &rows);
 	head_print(out, argc, argv);
 	print_head(out, run, label, workers);
 	print_rows(out, run, rows, count);
@@ -153,17 +149,13 @@ int main(int argc, char **argv)
 		run.effort_count = run.quick ? (int)(sizeof QUICK_EFFORTS / sizeof *EFFORTS) : (int)(sizeof EFFORTS / sizeof *EFFORTS);
 		memcpy(run.efforts, run.quick ? QUICK_EFFORTS : EFFORTS, (size_t)run.effort_count * sizeof *EFFORTS);
 	}
-	for (int n = optind; n < argc; n++)
-		if (!inputs_add(&run.inputs, argv[n]))
-			return 2;
-	inputs_sort(&run.inputs);
-	if (names && !inputs_keep_listed(&run.inputs, names))
+	if (!inputs_find(argv + optind, argc - optind, names, &run.inputs))
 		return 2;
 	if (run.quick)
 		inputs_thin(&run.inputs, QUICK_MATERIALS);
-	if (!run.inputs.count || workers < 1 || workers > RUN_WORKERS_MAX) {
+	if (!run.inputs.item_count || workers < 1 || workers > RUN_WORKERS_MAX) {
 		fprintf(stderr,
-		        run.inputs.count ? "brdfpack-bench: -j wants 1 to 64\n" : "brdfpack-bench: no MERL file (*.binary) found\n");
+		        run.inputs.item_count ? "brdfpack-bench: -j wants 1 to 64\n" : "brdfpack-bench: no measured file found\n");
 		usage(stderr);
 		return 2;
 	}
@@ -175,6 +167,6 @@ int main(int argc, char **argv)
 	bool written = run_and_print(&run, workers, output, label ? label : argv[optind], argc, argv);
 	free(run.pairs);
 	comparison_plans_free(&run.plans);
-	inputs_free(&run.inputs);
+	source_list_free(&run.inputs);
 	return run.failed || !written;
 }

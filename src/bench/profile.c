@@ -15,7 +15,6 @@
 struct profile_state {
 	uint8_t *record;
 	size_t bytes;
-	struct record_head head;
 	struct table *table; /* after profile_prepare */
 };
 
@@ -41,7 +40,7 @@ static bp_status profile_fit(const struct baseline *self, const struct bench_mat
 	if (!state)
 		return error_memory(error, sizeof *state);
 	bp_status status =
-		record_encode(material->lattice, material->name, &source, &options, &state->record, &state->bytes, &state->head, error);
+		record_encode(material->lattice, material->name, &source, &options, &state->record, &state->bytes, NULL, error);
 	if (status)
 		profile_free(state);
 	else

@@ -43,34 +43,25 @@ static double dot_float(const float *a, const float *b, size_t count)
 	return sum;
 }
 
-/* Gram matrices of the three unfoldings; the upper triangle is enough for dsyevd. */
-static void gram_h(const struct log_tensor *t, double *gram)
+/*
+ * The Gram matrix of an unfolding whose axis has `extent` cells, each `run` values long without a break (theta_h, theta_d); the
+ * upper triangle is enough for dsyevd.
+ */
+static void gram_runs(const struct log_tensor *t, size_t extent, size_t run, double *gram)
 {
-	const size_t H = t->dims.theta_h, slice = (size_t)t->dims.theta_d * t->dims.phi_d;
+	const size_t cells = lattice_cells(t->dims);
 
-	for (size_t a = 0; a < H; a++)
-		for (size_t b = a; b < H; b++) {
+	for (size_t a = 0; a < extent; a++)
+		for (size_t b = a; b < extent; b++) {
 			double sum = 0;
 			for (int c = 0; c < 3; c++)
-				sum += dot_float(t->plane[c] + a * slice, t->plane[c] + b * slice, slice);
-			gram[a * H + b] = sum;
+				for (size_t at = 0; at < cells; at += extent * run)
+					sum += dot_float(t->plane[c] + at + a * run, t->plane[c] + at + b * run, run);
+			gram[a * extent + b] = sum;
 		}
 }
 
-static void gram_d(const struct log_tensor *t, double *gram)
-{
-	const size_t H = t->dims.theta_h, D = t->dims.theta_d, P = t->dims.phi_d;
-
-	for (size_t a = 0; a < D; a++)
-		for (size_t b = a; b < D; b++) {
-			double sum = 0;
-			for (int c = 0; c < 3; c++)
-				for (size_t i = 0; i < H; i++)
-					sum += dot_float(t->plane[c] + (i * D + a) * P, t->plane[c] + (i * D + b) * P, P);
-			gram[a * D + b] = sum;
-		}
-}
-
+/* The same for phi_d. */
 static void gram_p(const struct log_tensor *t, double *gram)
 {
 	const size_t rows = (size_t)t->dims.theta_h * t->dims.theta_d, P = t->dims.phi_d;
@@ -133,10 +124,10 @@ bp_status projection_make(const struct log_tensor *t, struct projection *q, bp_e
 	q->basis_d = q->basis_h + H * q->h;
 	q->basis_p = q->basis_d + D * q->d;
 	double *gram = q->basis_p + P * q->p;
-	gram_h(t, gram);
+	gram_runs(t, H, D * P, gram);
 	if ((status = leading_eigenvectors(gram, H, q->h, q->basis_h, error)))
 		goto out;
-	gram_d(t, gram);
+	gram_runs(t, D, P, gram);
 	if ((status = leading_eigenvectors(gram, D, q->d, q->basis_d, error)))
 		goto out;
 	gram_p(t, gram);

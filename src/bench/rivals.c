@@ -2,14 +2,7 @@
 
 #include <math.h>
 
-double uniform_next(unsigned long long *u)
-{
-	/* xorshift64* (Vigna 2016) */
-	*u ^= *u >> 12;
-	*u ^= *u << 25;
-	*u ^= *u >> 27;
-	return (double)(*u * 0x2545F4914F6CDD1D >> 11) * 0x1p-53;
-}
+#include "timing.h"
 
 static void outgoing(double theta_o, float wo[3])
 {
@@ -29,6 +22,14 @@ struct sums {
 	double weight, square;
 	int count;
 };
+
+/* A sample drawn with this density. */
+static void sums_add(struct sums *sums, const bp_material *material, const float wi[3], const float wo[3], double pdf)
+{
+	double weight = mean_value(material, wi, wo) * (double)wi[2] / pdf;
+	sums->weight += weight;
+	sums->square += weight * weight;
+}
 
 static struct spread sums_end(const struct sums *sums)
 {
@@ -85,9 +86,7 @@ struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixt
 		double pdf = (1 - mixture.share) * (double)wi[2] / M_PI;
 		if (mixture.share > 0)
 			pdf += mixture.share * ggx_density(mixture.roughness, wi, wo);
-		double weight = mean_value(material, wi, wo) * (double)wi[2] / pdf;
-		sums.weight += weight;
-		sums.square += weight * weight;
+		sums_add(&sums, material, wi, wo, pdf);
 	}
 	return sums_end(&sums);
 }
@@ -99,10 +98,8 @@ struct spread spread_of_material(const bp_material *material, double theta_o, in
 	outgoing(theta_o, wo);
 	for (int n = 0; n < samples; n++) {
 		const float numbers[3] = {(float)uniform_next(u), (float)uniform_next(u), (float)uniform_next(u)};
-		double pdf = (double)bp_material_sample(material, wo, numbers, wi);
-		double weight = mean_value(material, wi, wo) * (double)wi[2] / pdf;
-		sums.weight += weight;
-		sums.square += weight * weight;
+		const double pdf = (double)bp_material_sample(material, wo, numbers, wi);
+		sums_add(&sums, material, wi, wo, pdf);
 	}
 	return sums_end(&sums);
 }

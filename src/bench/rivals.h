@@ -18,14 +18,12 @@ struct spread {
 	double deviation, albedo;
 };
 
-/* `u` is the state of a generator of uniform numbers, not 0. */
+/* `u` is the state of a generator of uniform numbers (timing.h). */
 struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixture, double theta_o, int samples,
                             unsigned long long *u);
 struct spread spread_of_material(const bp_material *material, double theta_o, int samples, unsigned long long *u);
 
 /* The mixture with the smallest mean square deviation over the angles. */
 struct ggx_mixture ggx_fit(const bp_material *material, const double *theta_o, int angles, unsigned long long *u);
-
-double uniform_next(unsigned long long *u);
 
 #endif

@@ -61,8 +61,8 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
 	row->evaluated = method->evaluate && !method->prepare ? EVALUATED_MODEL : EVALUATED_TABLE;
 	if (method->prepare && (status = method->prepare(state, table, error)))
 		goto out;
-	status = method->evaluate ? time_model(method, state, run->pairs, &row->evaluate_ns, error)
-	                          : time_table(table, run->pairs, &row->evaluate_ns, error);
+	status = method->evaluate ? time_evaluation(method->evaluate, state, run->pairs, &row->evaluate_ns, error)
+	                          : time_evaluation(evaluate_expansion, table, run->pairs, &row->evaluate_ns, error);
 	if (!status)
 		status = comparison_measure(&run->plans, truth, table, &row->figures, NULL, error);
 out:
@@ -106,7 +106,7 @@ static void run_yardsticks(struct run *run, int at, const char *name, const stru
 
 	if (run->method_on[METHOD_CAT]) {
 		for (int n = 0; n < REPEATS; n++)
-			if (time_read(run->inputs.paths[at], &seconds[n], NULL, &bytes, &error)) {
+			if (time_read(run->inputs.items[at].path, &seconds[n], NULL, &bytes, &error)) {
 				complain(run, name, "cat", &error);
 				return;
 			}
@@ -118,7 +118,7 @@ static void run_yardsticks(struct run *run, int at, const char *name, const stru
 		row = empty_row(at, METHOD_RAW_TABLE);
 		row.bytes = 3.0 * sizeof(double) * (double)lattice_cells(lattice->dims);
 		row.evaluated = EVALUATED_TABLE;
-		if (time_raw_table(lattice, run->pairs, &row.evaluate_ns, &error))
+		if (time_evaluation(evaluate_lattice, lattice, run->pairs, &row.evaluate_ns, &error))
 			complain(run, name, "raw-table", &error);
 		else
 			fwrite(&row, sizeof row, 1, run->rows);
@@ -139,7 +139,7 @@ static bp_status read_truth(const struct run *run, const char *name, struct latt
 
 static void run_material(struct run *run, int at)
 {
-	char name[256];
+	const char *path = run->inputs.items[at].path, *name = run->inputs.items[at].name;
 	struct lattice lattice = {0}, truth = {0};
 	struct expansion table = {0};
 	uint8_t *raw = NULL;
@@ -147,9 +147,8 @@ static void run_material(struct run *run, int at)
 	double start = clock_seconds(CLOCK_MONOTONIC), seconds;
 	bp_error error;
 
-	inputs_name(run->inputs.paths[at], name, sizeof name);
-	if (time_read(run->inputs.paths[at], &seconds, &raw, &raw_bytes, &error) ||
-	    lattice_read_path(run->inputs.paths[at], &(struct merl_reading){.any_dims = true}, &lattice, &error)) {
+	if (time_read(path, &seconds, &raw, &raw_bytes, &error) ||
+	    lattice_read_path(path, &(struct merl_reading){.any_dims = true}, &lattice, &error)) {
 		complain(run, name, "reading", &error);
 		goto out;
 	}
@@ -178,7 +177,7 @@ int run_all(struct run *run, int workers, struct row **out)
 {
 	FILE *files[RUN_WORKERS_MAX];
 	pid_t children[RUN_WORKERS_MAX];
-	int count = 0, capacity = run->inputs.count * METHOD_COUNT * LADDER_MAX;
+	int count = 0, capacity = (int)run->inputs.item_count * METHOD_COUNT * LADDER_MAX;
 	struct row *rows = malloc((size_t)capacity * sizeof *rows);
 
 	for (int w = 0; w < workers; w++)
@@ -195,7 +194,7 @@ int run_all(struct run *run, int workers, struct row **out)
 		if (children[w])
 			continue;
 		run->rows = files[w];
-		for (int at = w; at < run->inputs.count; at += workers)
+		for (int at = w; at < (int)run->inputs.item_count; at += workers)
 			run_material(run, at);
 		fflush(run->rows);
 		if (workers > 1)

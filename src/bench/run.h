@@ -14,7 +14,7 @@
 enum { LADDER_MAX = 16, RUN_WORKERS_MAX = 64 };
 
 struct run {
-	struct inputs inputs;
+	struct source_list inputs;
 	const char *truth; /* folder of the tables that the figures are taken against; NULL: the inputs themselves */
 	bool quick;        /* every fit once */
 	bool method_on[METHOD_COUNT];

@@ -16,24 +16,23 @@ enum { READ_BYTES = 128 * 1024 };
 
 double median_of(double *values, int count) { return select_kth(values, (size_t)count, (size_t)(count - 1) / 2); }
 
-/* splitmix64 (Steele, Lea, Flood 2014), in [0, 1). */
-static double random_unit(uint64_t *state)
+double uniform_next(unsigned long long *u)
 {
-	uint64_t z = *state += 0x9E3779B97F4A7C15;
-
-	z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9;
-	z = (z ^ z >> 27) * 0x94D049BB133111EB;
-	return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+	/* xorshift64* (Vigna 2016) */
+	*u ^= *u >> 12;
+	*u ^= *u << 25;
+	*u ^= *u >> 27;
+	return (double)(*u * 0x2545F4914F6CDD1D >> 11) * 0x1p-53;
 }
 
 void pairs_make(struct pairs *out)
 {
 	const double lowest = 3.0458649e-4; /* sin^2 of 1 degree */
-	uint64_t state = 1;
+	unsigned long long u = 1;
 
 	for (int n = 0; n < 2 * PAIRS; n++) {
 		double *w = n < PAIRS ? out->wi[n] : out->wo[n - PAIRS];
-		double z2 = lowest + (1 - lowest) * random_unit(&state), phi = 2 * M_PI * random_unit(&state), r = sqrt(1 - z2);
+		double z2 = lowest + (1 - lowest) * uniform_next(&u), phi = 2 * M_PI * uniform_next(&u), r = sqrt(1 - z2);
 		w[0] = r * cos(phi);
 		w[1] = r * sin(phi);
 		w[2] = sqrt(z2);
@@ -49,7 +48,7 @@ static bp_status check_sum(double sum, bool negative, bp_error *error)
 	                 negative ? "negative" : "not finite");
 }
 
-bp_status time_model(const struct baseline *method, const void *state, const struct pairs *pairs, double *ns, bp_error *error)
+bp_status time_evaluation(evaluate_fn *evaluate, const void *state, const struct pairs *pairs, double *ns, bp_error *error)
 {
 	double seconds[REPEATS], sum = 0;
 	bool negative = false;
@@ -58,7 +57,7 @@ bp_status time_model(const struct baseline *method, const void *state, const str
 		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 		for (int n = 0; n < PAIRS; n++) {
 			double rgb[3];
-			method->evaluate(state, pairs->wi[n], pairs->wo[n], rgb);
+			evaluate(state, pairs->wi[n], pairs->wo[n], rgb);
 			negative |= rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0;
 			sum += rgb[0] + rgb[1] + rgb[2];
 		}
@@ -76,40 +75,22 @@ static size_t nearest_cell(struct lattice_dims dims, const double wi[3], const d
 	return lattice_index(dims, (uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]);
 }
 
-bp_status time_table(const struct expansion *table, const struct pairs *pairs, double *ns, bp_error *error)
+void evaluate_expansion(const void *state, const double wi[3], const double wo[3], double rgb[3])
 {
-	double seconds[REPEATS], sum = 0;
-	bool negative = false;
+	const struct expansion *table = state;
+	const size_t cell = nearest_cell(table->dims, wi, wo);
 
-	for (int r = 0; r < REPEATS; r++) {
-		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-		for (int n = 0; n < PAIRS; n++) {
-			size_t cell = nearest_cell(table->dims, pairs->wi[n], pairs->wo[n]);
-			float red = table->rgb[0][cell], green = table->rgb[1][cell], blue = table->rgb[2][cell];
-			negative |= red < 0 || green < 0 || blue < 0;
-			sum += table->unit * (double)(red + green + blue);
-		}
-		seconds[r] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
-	}
-	*ns = median_of(seconds, REPEATS) / PAIRS * 1e9;
-	return check_sum(sum, negative, error);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = table->unit * (double)table->rgb[c][cell];
 }
 
-bp_status time_raw_table(const struct lattice *lattice, const struct pairs *pairs, double *ns, bp_error *error)
+void evaluate_lattice(const void *state, const double wi[3], const double wo[3], double rgb[3])
 {
-	double seconds[REPEATS], sum = 0;
+	const struct lattice *lattice = state;
+	const size_t cell = nearest_cell(lattice->dims, wi, wo);
 
-	for (int r = 0; r < REPEATS; r++) {
-		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-		for (int n = 0; n < PAIRS; n++) {
-			size_t cell = nearest_cell(lattice->dims, pairs->wi[n], pairs->wo[n]);
-			if (lattice->valid[cell])
-				sum += lattice->rgb[0][cell] + lattice->rgb[1][cell] + lattice->rgb[2][cell];
-		}
-		seconds[r] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
-	}
-	*ns = median_of(seconds, REPEATS) / PAIRS * 1e9;
-	return check_sum(sum, sum < 0, error);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = lattice->valid[cell] ? lattice->rgb[c][cell] : 0;
 }
 
 bp_status time_read(const char *path, double *seconds, uint8_t **bytes, size_t *count, bp_error *error)

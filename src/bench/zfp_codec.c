@@ -32,17 +32,20 @@ static void zfp_state_free(void *opaque)
 	free(state);
 }
 
-/* Codes or decodes one plane; returns the bytes of the stream, 0 on failure. */
+/* Codes or decodes one plane, or (bytes NULL) sizes up the room for coding it; returns the bytes of the stream, 0 on failure. */
 static size_t run_plane(struct lattice_dims dims, float *plane, int exponent, uint8_t *bytes, size_t capacity, bool decode)
 {
 	zfp_field *field = zfp_field_3d(plane, zfp_type_float, dims.phi_d, dims.theta_d, dims.theta_h);
 	zfp_stream *zfp = zfp_stream_open(NULL);
-	bitstream *stream = stream_open(bytes, capacity);
+	bitstream *stream = bytes ? stream_open(bytes, capacity) : NULL;
 	size_t size = 0;
 
+	if (field && zfp)
+		zfp_stream_set_accuracy(zfp, ldexp(1, exponent));
+	if (field && zfp && !bytes)
+		size = zfp_stream_maximum_size(zfp, field);
 	if (field && zfp && stream) {
 		zfp_stream_set_bit_stream(zfp, stream);
-		zfp_stream_set_accuracy(zfp, ldexp(1, exponent));
 		zfp_stream_rewind(zfp);
 		size = decode ? zfp_decompress(zfp, field) : zfp_compress(zfp, field);
 	}
@@ -66,23 +69,6 @@ static void split_colour(struct log_tensor *tensor)
 		tensor->plane[1][cell] = r - g;
 		tensor->plane[2][cell] = b - g;
 	}
-}
-
-static size_t capacity_of(struct lattice_dims dims, float *plane)
-{
-	zfp_field *field = zfp_field_3d(plane, zfp_type_float, dims.phi_d, dims.theta_d, dims.theta_h);
-	zfp_stream *zfp = zfp_stream_open(NULL);
-	size_t capacity = 0;
-
-	if (field && zfp) {
-		zfp_stream_set_accuracy(zfp, ldexp(1, EXPONENT_MIN));
-		capacity = zfp_stream_maximum_size(zfp, field);
-	}
-	if (zfp)
-		zfp_stream_close(zfp);
-	if (field)
-		zfp_field_free(field);
-	return capacity;
 }
 
 static size_t total_size(const struct log_tensor *tensor, int exponent, uint8_t *scratch, size_t capacity)
@@ -111,7 +97,7 @@ static bp_status zfp_fit(const struct baseline *self, const struct bench_materia
 		goto out;
 	split_colour(&tensor);
 	state->dims = tensor.dims;
-	capacity = capacity_of(tensor.dims, tensor.plane[0]);
+	capacity = run_plane(tensor.dims, tensor.plane[0], EXPONENT_MIN, NULL, 0, false);
 	scratch = malloc(capacity);
 	if (!scratch || !capacity) {
 		status = error_memory(error, capacity);

@@ -1,20 +1,11 @@
 #include "profile_codec.h"
 
-static const struct profile_codec *const CODECS[] = {&PAPER_CODEC, &SPECTRAL_CODEC};
-
 const struct profile_codec *profile_codec_find(enum profile profile)
 {
-	for (size_t i = 0; i < sizeof CODECS / sizeof *CODECS; i++)
-		if (CODECS[i]->profile == profile)
-			return CODECS[i];
-	return NULL;
+	return profile == PROFILE_PAPER ? &PAPER_CODEC : profile == PROFILE_SPECTRAL ? &SPECTRAL_CODEC : NULL;
 }
 
-const struct profile_encoder *profile_codec_find_encoder(enum profile profile)
+profile_encode_fn *profile_encoder_find(enum profile profile)
 {
-	static const struct profile_encoder *const ENCODERS[] = {&PAPER_ENCODER, &SPECTRAL_ENCODER};
-	for (size_t i = 0; i < sizeof ENCODERS / sizeof *ENCODERS; i++)
-		if (ENCODERS[i]->profile == profile)
-			return ENCODERS[i];
-	return NULL;
+	return profile == PROFILE_PAPER ? paper_encode : profile == PROFILE_SPECTRAL ? spectral_encode : NULL;
 }

@@ -1,6 +1,5 @@
 /*
- * profile_codec.h: what a profile has to offer to put its models into records. One row per profile
- * in profile_codec.c; record.c does what all have in common.
+ * profile_codec.h: what a profile has to offer to put its models into records; record.c does what all have in common.
  */
 #ifndef CODEC_PROFILE_CODEC_H
 #define CODEC_PROFILE_CODEC_H
@@ -17,21 +16,14 @@ struct encode_request {
 /* A section that has been fetched and whose checksum holds. */
 struct section_bytes {
 	const struct record_section *entry;
-	const uint8_t *bytes; /* entry->bytes of them */
-};
-
-/* A kind of section that this reader understands. */
-struct section_kind {
-	uint16_t type, codec, version;
+	uint8_t *bytes; /* entry->bytes of them */
 };
 
 struct profile_codec {
-	enum profile profile;
 	uint32_t version; /* goes into the record's head; changes when the same input and options would give other bytes */
-	const struct section_kind *kinds;
-	uint32_t kind_count;
-	const struct section_kind *retired; /* kinds that earlier versions wrote and this one no longer reads */
-	uint32_t retired_count;
+	/* Of a section's type, codec and version: does this reader understand them? Did only earlier ones? */
+	bool (*reads)(const struct record_section *entry);
+	bool (*retired)(const struct record_section *entry); /* NULL: there are none */
 	/*
 	 * Builds the profile's part of *model from the sections of the layers that are wanted, in file order; on failure
 	 * record_decode frees what has been attached with model_free. Offsets in errors count from the section's start
@@ -41,27 +33,24 @@ struct profile_codec {
 	                    uint32_t *failed, bp_error *error);
 };
 
-/* Apart from the above, so that a program that only reads links no encoder. */
-struct profile_encoder {
-	enum profile profile;
-	/*
-	 * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least
-	 * possible, when head and sections cannot be as small as request->record_bytes_max. An encoder that knows what
-	 * decoding would give may store it in *decoded (NULL before), which saves measuring it the time; the caller frees it.
-	 */
-	bp_status (*encode)(const struct model *model, const struct encode_request *request, struct section_list *sections,
-	                    uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error);
-};
+/*
+ * Adds the model's sections to an empty list, sets *layer_count and *left_out. BP_ERROR_LIMIT, naming the least possible, when
+ * head and sections cannot be as small as request->record_bytes_max. An encoder that knows what decoding would give may store it
+ * in *decoded (NULL before), which saves measuring it the time; the caller frees it.
+ */
+typedef bp_status profile_encode_fn(const struct model *model, const struct encode_request *request,
+                                    struct section_list *sections, uint32_t *layer_count, uint32_t *left_out,
+                                    struct model **decoded, bp_error *error);
 
-/* NULL for a profile that this program does not know. */
+/* NULL for a profile that this program does not know. Two functions, so that a program that only reads links no encoder. */
 const struct profile_codec *profile_codec_find(enum profile profile);
-const struct profile_encoder *profile_codec_find_encoder(enum profile profile);
+profile_encode_fn *profile_encoder_find(enum profile profile);
 
 /* paper_sections.c */
 extern const struct profile_codec PAPER_CODEC;
-extern const struct profile_encoder PAPER_ENCODER;
+profile_encode_fn paper_encode;
 /* spectral_sections.c */
 extern const struct profile_codec SPECTRAL_CODEC;
-extern const struct profile_encoder SPECTRAL_ENCODER;
+profile_encode_fn spectral_encode;
 
 #endif

@@ -40,65 +40,49 @@ bool record_answers(const struct record_head *head, const struct record_source *
 	       head->source.bytes == source->bytes && !memcmp(head->source.sha256, source->sha256, SHA256_BYTES);
 }
 
-static bool kind_among(const struct section_kind *kinds, uint32_t count, const struct record_section *entry)
-{
-	for (uint32_t i = 0; i < count; i++)
-		if (kinds[i].type == entry->type && kinds[i].codec == entry->codec && kinds[i].version == entry->version)
-			return true;
-	return false;
-}
-
 uint32_t record_bytes_needed(const struct record_head *head, uint32_t layers)
 {
 	const struct profile_codec *codec = profile_codec_find(head->profile);
 	uint32_t bytes = head->head_bytes;
 	for (uint32_t i = 0; codec && i < head->section_count && head->sections[i].layer < layers; i++)
-		if (kind_among(codec->kinds, codec->kind_count, &head->sections[i]))
+		if (codec->reads(&head->sections[i]))
 			bytes += head->sections[i].bytes;
 	return bytes;
 }
 
-static bp_status section_fetch(const struct record_section *entry, record_fetch_fn *fetch, void *user, uint8_t **out,
+static bp_status section_fetch(const struct record_section *entry, record_fetch_fn *fetch, void *user, struct section_bytes *out,
                                bp_error *error)
 {
-	uint8_t *bytes = malloc(entry->bytes);
-	if (!bytes)
+	*out = (struct section_bytes){.entry = entry, .bytes = malloc(entry->bytes)};
+	if (!out->bytes)
 		return error_memory(error, entry->bytes);
-	bp_status status = fetch(user, entry->offset, bytes, entry->bytes, error);
-	if (!status && bytes_crc32(bytes, entry->bytes) != entry->crc32)
-		status = error_set(error, BP_ERROR_CHECKSUM, entry->offset, "the checksum of a section of type %u differs", entry->type);
-	if (status) {
-		free(bytes);
-		return status;
-	}
-	*out = bytes;
-	return BP_OK;
+	const bp_status status = fetch(user, entry->offset, out->bytes, entry->bytes, error);
+	if (!status && bytes_crc32(out->bytes, entry->bytes) != entry->crc32)
+		return error_set(error, BP_ERROR_CHECKSUM, entry->offset, "the checksum of a section of type %u differs", entry->type);
+	return status;
 }
 
 /* Fetches what the layers need: *count sections, whose bytes the caller frees also after a failure. */
 static bp_status sections_fetch(const struct record_head *head, const struct profile_codec *codec, uint32_t layers,
-                                record_fetch_fn *fetch, void *user, struct section_bytes *sections, uint8_t **held,
-                                uint32_t *count, bp_error *error)
+                                record_fetch_fn *fetch, void *user, struct section_bytes *sections, uint32_t *count,
+                                bp_error *error)
 {
 	for (uint32_t i = 0; i < head->section_count && head->sections[i].layer < layers; i++) {
 		const struct record_section *entry = &head->sections[i];
-		if (!kind_among(codec->kinds, codec->kind_count, entry)) {
-			if (kind_among(codec->retired, codec->retired_count, entry))
-				return error_set(
-					error, BP_ERROR_UNSUPPORTED, entry->offset,
-					"%s: packed by an earlier version whose records of this profile are no longer read; pack the material again",
-					head->name);
-			if (entry->flags & SECTION_REQUIRED)
-				return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
-				                 "%s: a section of type %u, codec %u, version %u is required; a newer program is needed",
-				                 head->name, entry->type, entry->codec, entry->version);
-			continue;
+		if (codec->reads(entry)) {
+			const bp_status status = section_fetch(entry, fetch, user, &sections[(*count)++], error);
+			if (status)
+				return status;
+		} else if (codec->retired && codec->retired(entry)) {
+			return error_set(
+				error, BP_ERROR_UNSUPPORTED, entry->offset,
+				"%s: packed by an earlier version whose records of this profile are no longer read; pack the material again",
+				head->name);
+		} else if (entry->flags & SECTION_REQUIRED) {
+			return error_set(error, BP_ERROR_UNSUPPORTED, entry->offset,
+			                 "%s: a section of type %u, codec %u, version %u is required; a newer program is needed", head->name,
+			                 entry->type, entry->codec, entry->version);
 		}
-		bp_status status = section_fetch(entry, fetch, user, &held[*count], error);
-		if (status)
-			return status;
-		sections[*count] = (struct section_bytes){.entry = entry, .bytes = held[*count]};
-		++*count;
 	}
 	return BP_OK;
 }
@@ -108,7 +92,6 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 {
 	const struct profile_codec *codec = profile_codec_find(head->profile);
 	struct section_bytes sections[RECORD_SECTIONS_MAX];
-	uint8_t *held[RECORD_SECTIONS_MAX];
 	uint32_t count = 0, failed = UINT32_MAX;
 	struct model *model;
 
@@ -125,13 +108,13 @@ bp_status record_decode(const struct record_head *head, uint32_t layers, record_
 	model->horizon_limit = head->horizon_limit;
 	memcpy(model->colour, head->colour, sizeof model->colour);
 	model->layer_count = layers;
-	bp_status status = sections_fetch(head, codec, layers, fetch, user, sections, held, &count, error);
+	bp_status status = sections_fetch(head, codec, layers, fetch, user, sections, &count, error);
 	if (!status) {
 		status = codec->decode(head, sections, count, model, &failed, error);
 		status = error_shift(status, failed < count ? sections[failed].entry->offset : 0, error);
 	}
 	while (count > 0)
-		free(held[--count]);
+		free(sections[--count].bytes);
 	if (status)
 		model_free(model);
 	else

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "error.h"
+#include "model/fidelity.h"
 #include "model/math/fast_math.h"
 #include "stage.h"
 #include "name.h"
 #include "profile_codec.h"
-#include "record_measure.h"
 #include "record_origin.h"
 
 static void head_fill(struct record_head *head, const struct model *model, const char *name, const struct record_source *source,
@@ -27,10 +27,78 @@ static void head_fill(struct record_head *head, const struct model *model, const
 	head->source = *source;
 }
 
+/* ---- the errors of a record's layers, which are measured on what its own bytes decode to ---- */
+
+/* Layers that are measured in one pass over the measured table: what the previews of a usual budget and the whole are. */
+enum { MEASURED_AT_ONCE = 3, MEASURED_CELLS_MAX = 1 << 22 };
+
+/* Expands layer `l` of `decoded`, or, where there is none, decodes it from the record's own bytes. */
+static bp_status layer_expand(const struct record_head *head, const uint8_t *record, const struct model *decoded, uint32_t l,
+                              struct expansion *table, bp_error *error)
+{
+	struct model *model = NULL;
+	bp_status status = BP_OK;
+	if (!decoded)
+		status = record_decode_whole(head, l + 1, record, &model, error);
+	if (!status)
+		status = model_expand(decoded ? decoded : model, l + 1, table, error);
+	model_free(model);
+	return status;
+}
+
+/* Fills in the figures of every layer. */
+static bp_status layers_measure(struct record_head *head, const uint8_t *record, const struct lattice *lattice,
+                                const struct model *decoded, const struct watch *watch, bp_error *error)
+{
+	/* A large lattice's layers one by one: their tables would take more memory than the pass is worth. */
+	const uint32_t at_once = lattice_cells(head->dims) <= MEASURED_CELLS_MAX ? MEASURED_AT_ONCE : 1;
+	struct expansion tables[MEASURED_AT_ONCE] = {0};
+	struct fidelity figures[MEASURED_AT_ONCE];
+	bp_status status = BP_OK;
+
+	for (uint32_t l = 0; !status && l < head->layer_count; l += at_once) {
+		uint32_t count = 0;
+		while (!status && count < at_once && l + count < head->layer_count) {
+			status = watch_tell(watch, 0.8 + 0.2 * (l + count) / head->layer_count, error);
+			if (!status)
+				status = layer_expand(head, record, decoded, l + count, &tables[count], error);
+			count++;
+		}
+		if (!status)
+			status = fidelity_measure(lattice, tables, count, figures, error);
+		for (uint32_t k = 0; !status && k < count; k++)
+			head->layers[l + k].fidelity = figures[k];
+	}
+	for (int k = 0; k < MEASURED_AT_ONCE; k++)
+		expansion_free(&tables[k]);
+	return status;
+}
+
+/*
+ * Head and sections -> record (sections_join), with the figures of every layer against the lattice; *record is malloc'ed.
+ * `decoded`: the model that they decode to, where it is at hand, or NULL. `watch` is told before every layer.
+ */
+static bp_status record_measure(struct record_head *head, const struct section_list *sections, const struct lattice *lattice,
+                                const struct model *decoded, const struct watch *watch, uint8_t **record, size_t *record_bytes,
+                                bp_error *error)
+{
+	uint8_t *unmeasured = NULL;
+	/* Once to have the bytes that are decoded, once more with what was measured on them. */
+	bp_status status = sections_join(head, sections, &unmeasured, record_bytes, error);
+	const enum stage before = stage_enter(STAGE_MEASURE);
+	if (!status)
+		status = layers_measure(head, unmeasured, lattice, decoded, watch, error);
+	free(unmeasured);
+	stage_enter(before);
+	return status ? status : sections_join(head, sections, record, record_bytes, error);
+}
+
+/* ---- one record ---- */
+
 /* What stays the same while records of several sizes are tried. */
 struct packing {
 	const struct lattice *lattice;
-	const struct profile_encoder *encoder;
+	profile_encode_fn *encode;
 	const struct model *model;
 	struct encode_request request;
 	struct record_head head; /* the constant parts filled */
@@ -55,8 +123,8 @@ static bp_status record_build(const struct packing *packing, uint32_t record_byt
 	bp_status status = watch_tell(request.options->watch, 0.6, error);
 	if (status)
 		goto out;
-	status = packing->encoder->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out,
-	                                  &decoded, error);
+	status =
+		packing->encode(packing->model, &request, &sections, &packed.head.layer_count, &packed.head.left_out, &decoded, error);
 	if (status)
 		goto out;
 	if (!record_origin_add(&sections, &packing->head.source.origin)) {
@@ -83,6 +151,8 @@ static double last_error(const struct packed *packed)
 {
 	return packed->head.layers[packed->head.layer_count - 1].fidelity.log_rmse;
 }
+
+/* ---- the smallest record within an error ---- */
 
 /* What a search for a size knows: sizes that do not satisfy end at `low`, the smallest that does is `high`, 0 for none. */
 struct bracket {
@@ -157,13 +227,13 @@ bp_status record_encode(const struct lattice *lattice, const char *name, const s
                         const struct fit_options *options, uint8_t **record, size_t *record_bytes, struct record_head *head,
                         bp_error *error)
 {
-	struct packing packing = {.lattice = lattice, .encoder = profile_codec_find_encoder(options->profile)};
+	struct packing packing = {.lattice = lattice, .encode = profile_encoder_find(options->profile)};
 	struct packed packed = {.record = NULL};
 	struct model *model = NULL;
 	size_t name_bytes = strlen(name);
 	const char *fault = name_fault(name, name_bytes);
 
-	if (!packing.encoder)
+	if (!packing.encode)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
 	if (fault)
 		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);

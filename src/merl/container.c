@@ -3,16 +3,16 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "container_fault.h"
 #include "error.h"
+#include "input.h"
+#include "name.h"
 #include "source_kind.h"
 
 enum { BLOCK_BYTES = 1 << 18, FAILURES_MAX = 1000 };
@@ -28,9 +28,7 @@ struct container {
 	bool pending;   /* the first entry, read while opening */
 	bool finished;
 	unsigned failures; /* entries that could not be read; a limit keeps hostile files from going on for ever */
-	size_t members, ignored;
-	struct licences licences; /* among the ignored */
-	const char *remark;
+	struct container_sums sums;
 	char fault[512]; /* of the current member */
 	locale_t locale;
 };
@@ -66,7 +64,7 @@ static bp_status refuse(struct container *container, const char *what, bp_error 
 /* x.binary.gz -> x.binary: what a compressed file that is no archive holds. */
 static char *raw_member_name(const char *path)
 {
-	const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+	const char *base = name_in_path(path), *dot = strrchr(base, '.');
 	return dot && dot != base ? strndup(base, (size_t)(dot - base)) : strdup(base);
 }
 
@@ -96,33 +94,38 @@ static bool formats_choose(struct archive *archive, enum container_order order)
 	return archive_read_support_format_zip(archive) == ARCHIVE_OK && archive_read_support_format_raw(archive) == ARCHIVE_OK;
 }
 
+static int format_of(const struct container *container) { return archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK; }
+
+/* libarchive's answer. */
+static int header_next(struct container *container)
+{
+	int answer;
+	do
+		answer = archive_read_next_header(container->archive, &container->entry);
+	while (answer == ARCHIVE_RETRY);
+	return answer;
+}
+
 /* At the end of a tar, or of a compressed file: does the file end too? A zip's directory is there: container_fault sees it. */
 static void end_look(struct container *container)
 {
-	const int format = archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK;
+	const int format = format_of(container);
 	const la_int64_t read = archive_filter_bytes(container->archive, -1);
-	if (!container->remark && (format == ARCHIVE_FORMAT_TAR || format == ARCHIVE_FORMAT_RAW) && read >= 0)
-		container->remark = container_rest(container->fd, read);
+	if (!container->sums.remark && (format == ARCHIVE_FORMAT_TAR || format == ARCHIVE_FORMAT_RAW) && read >= 0)
+		container->sums.remark = container_rest(container->fd, read);
 }
 
 /* The next entry of any kind; *more = false at the end. After an error the next call goes on, unless it was fatal. */
 static bp_status entry_next(struct container *container, bool *more, bp_error *error)
 {
-	int answer;
 	*more = false;
 	container->current = false;
 	free(container->path);
 	container->path = NULL;
 	if (container->finished)
 		return BP_OK;
-	if (container->pending) {
-		container->pending = false;
-		answer = ARCHIVE_OK;
-	} else {
-		do
-			answer = archive_read_next_header(container->archive, &container->entry);
-		while (answer == ARCHIVE_RETRY);
-	}
+	const int answer = container->pending ? ARCHIVE_OK : header_next(container);
+	container->pending = false;
 	container->failures += answer == ARCHIVE_FAILED;
 	if (answer == ARCHIVE_EOF || answer == ARCHIVE_FATAL || container->failures > FAILURES_MAX)
 		container->finished = true;
@@ -146,44 +149,27 @@ static bp_status entry_next(struct container *container, bool *more, bp_error *e
 bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out,
                          bp_error *error)
 {
-	struct stat about;
-	bp_status status;
+	uint64_t file_bytes;
 	struct container *container = calloc(1, sizeof *container);
 	if (!container)
 		return error_memory(error, sizeof *container);
-	container->fd = -1;
 	container->locale = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0);
 	container->archive = archive_read_new();
-	container->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a FIFO must not make it wait */
-	if (container->fd < 0 || fstat(container->fd, &about) != 0) {
-		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
-		goto out;
-	}
-	if (!S_ISREG(about.st_mode)) {
-		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "not a regular file");
-		goto out;
-	}
-	if (!container->archive || !formats_choose(container->archive, order)) {
+	bp_status status = input_open(path, &container->fd, &file_bytes, error);
+	if (!status && (!container->archive || !formats_choose(container->archive, order)))
 		status = error_memory(error, BLOCK_BYTES);
+	if (status)
 		goto out;
-	}
 	const locale_t before = locale_enter(container);
 	options_set(container->archive, charset);
 	int answer = archive_read_open_fd(container->archive, container->fd, BLOCK_BYTES);
 	if (answer == ARCHIVE_OK)
-		do
-			answer = archive_read_next_header(container->archive, &container->entry);
-		while (answer == ARCHIVE_RETRY);
-	const bool raw = (archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_RAW;
+		answer = header_next(container);
+	const bool raw = format_of(container) == ARCHIVE_FORMAT_RAW;
 	const int filters = archive_filter_count(container->archive); /* one of them is the file itself */
-	status = BP_OK;
-	if (answer == ARCHIVE_EOF) {
-		container->finished = true;
-		container->remark = container_emptiness(container->fd);
-	}
-	if (answer == ARCHIVE_OK || answer == ARCHIVE_WARN)
-		container->pending = true;
-	else if (answer != ARCHIVE_EOF)
+	container->pending = answer == ARCHIVE_OK || answer == ARCHIVE_WARN;
+	container->finished = answer == ARCHIVE_EOF;
+	if (!container->pending && !container->finished)
 		status = refuse(container, "not readable as tar or zip", error);
 	locale_leave(before);
 	/* Any bytes at all pass for "raw" and for an empty tar: only a compressed file may be the one, and zeros the other. */
@@ -193,9 +179,10 @@ bp_status container_open(const char *path, enum container_order order, const cha
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "neither tar nor zip");
 	if (status != BP_OK && status != BP_ERROR_UNSUPPORTED && status != BP_ERROR_MEMORY && container_fault(container->fd))
 		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", container_fault(container->fd));
-	else if (status == BP_OK && !container->remark &&
-	         (archive_format(container->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_ZIP)
-		container->remark = container_fault(container->fd);
+	else if (status == BP_OK && (container->finished || format_of(container) == ARCHIVE_FORMAT_ZIP))
+		container->sums.remark = container_fault(container->fd);
+	if (container->finished && !container->sums.remark)
+		container->sums.remark = "there is no file in it";
 	if (status == BP_OK && raw && !(container->raw_name = raw_member_name(path)))
 		status = error_memory(error, 256);
 out:
@@ -211,10 +198,10 @@ static bool entry_counts(struct container *container)
 {
 	const bool folder = !container->raw_name && archive_entry_filetype(container->entry) == AE_IFDIR;
 	const bool counts = !folder && (!container->path[0] || source_kind_by_name(container->path) != SOURCE_KIND_OTHER);
-	container->members += counts;
-	container->ignored += !counts && !folder;
+	container->sums.members += counts;
+	container->sums.ignored += !counts && !folder;
 	if (!counts && !folder)
-		licences_note(&container->licences, container->path, NULL);
+		licences_note(&container->sums.licences, container->path, NULL);
 	return counts;
 }
 
@@ -268,9 +255,7 @@ bp_status container_next(struct container *container, struct container_member *m
 	return status;
 }
 
-const char *container_remark(const struct container *container) { return container->remark; }
-
-size_t container_members(const struct container *container) { return container->members; }
+const struct container_sums *container_sums(const struct container *container) { return &container->sums; }
 
 bool container_ahead(const struct container *container, uint32_t ordinal)
 {
@@ -307,10 +292,6 @@ bp_status container_read(void *user, void *bytes, size_t capacity, size_t *read,
 	return BP_OK;
 }
 
-size_t container_ignored(const struct container *container) { return container->ignored; }
-
-const struct licences *container_licences(const struct container *container) { return &container->licences; }
-
 void container_close(struct container *container)
 {
 	if (!container)
@@ -321,7 +302,7 @@ void container_close(struct container *container)
 		close(container->fd);
 	if (container->locale)
 		freelocale(container->locale);
-	licences_free(&container->licences);
+	licences_free(&container->sums.licences);
 	free(container->raw_name);
 	free(container->path);
 	free(container);

@@ -38,9 +38,6 @@ enum container_order {
 bp_status container_open(const char *path, enum container_order order, const char *charset, struct container **out,
                          bp_error *error);
 
-/* What is wrong with the whole container although its members can be read, known at its end; NULL: nothing. */
-const char *container_remark(const struct container *container);
-
 /*
  * Moves on to the next member that counts; *more = false at the end. Errors (BP_ERROR_BAD_INPUT:
  * damaged) concern one member: call again to go on; where that is not
@@ -59,12 +56,14 @@ bool container_ahead(const struct container *container, uint32_t ordinal);
 /* A merl_read_fn for the current member; user is the struct container. */
 bp_status container_read(void *container, void *bytes, size_t capacity, size_t *read, bp_error *error);
 
-/* Members that counted so far. */
-size_t container_members(const struct container *container);
-
-/* Members passed over so far because they are no measured files (folders do not count), and the texts of licences among them. */
-size_t container_ignored(const struct container *container);
-const struct licences *container_licences(const struct container *container);
+/* What has been met so far. */
+struct container_sums {
+	size_t members;           /* those that counted */
+	size_t ignored;           /* passed over because they are no measured files; folders do not count */
+	struct licences licences; /* of these, texts of licences */
+	const char *remark;       /* what is wrong with the whole although its members can be read, known at its end; NULL: nothing */
+};
+const struct container_sums *container_sums(const struct container *container);
 
 void container_close(struct container *container); /* NULL is allowed */
 

@@ -8,16 +8,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "bytes.h"
+
 /* The end record of a zip: fixed part, and the longest comment behind it. */
 enum { HEAD_BYTES = 512, ZIP_END_BYTES = 22, ZIP_COMMENT_MAX = 65535, CHUNK_BYTES = 1 << 16 };
-
-static uint32_t number_at(const uint8_t *bytes, size_t count)
-{
-	uint32_t value = 0;
-	while (count-- > 0)
-		value = value << 8 | bytes[count];
-	return value;
-}
 
 #define ZEROS "holds nothing but zeros: was the download completed?"
 
@@ -45,15 +39,16 @@ static const char *zip_fault(int fd, const uint8_t *head, size_t head_bytes)
 	const char *fault = NULL;
 	for (ssize_t at = got - ZIP_END_BYTES; at >= 0; at--) {
 		const uint8_t *end = tail + at;
-		if (memcmp(end, "PK\5\6", 4) != 0 || at + ZIP_END_BYTES + (ssize_t)number_at(end + 20, 2) > got)
+		const uint16_t comment = load_u16(end + 20);
+		if (memcmp(end, "PK\5\6", 4) != 0 || at + ZIP_END_BYTES + comment > got)
 			continue;
-		const uint32_t disk = number_at(end + 4, 2), bytes = number_at(end + 12, 4), offset = number_at(end + 16, 4);
+		const uint32_t disk = load_u16(end + 4), bytes = load_u32(end + 12), offset = load_u32(end + 16);
 		if (disk != 0 && disk != 0xFFFF)
 			fault = "the last part of a split zip; join its parts first (zip -s 0 THIS.zip --out WHOLE.zip)";
 		else if (bytes != UINT32_MAX && offset != UINT32_MAX && (uint64_t)(start + at) > (uint64_t)bytes + offset &&
 		         head_bytes >= 4 && !memcmp(head, "PK\3\4", 4))
 			fault = "another zip stands before this one in the same file, and its members are not read; separate them";
-		else if (!all_zeros(fd, start + at + ZIP_END_BYTES + (off_t)number_at(end + 20, 2)))
+		else if (!all_zeros(fd, start + at + ZIP_END_BYTES + comment))
 			fault = REST;
 		break;
 	}
@@ -100,9 +95,3 @@ const char *container_fault(int fd)
 }
 
 const char *container_rest(int fd, int64_t end) { return all_zeros(fd, (off_t)end) ? NULL : REST; }
-
-const char *container_emptiness(int fd)
-{
-	const char *fault = container_fault(fd);
-	return fault ? fault : "there is no file in it";
-}

@@ -12,7 +12,4 @@ const char *container_fault(int fd);
 /* The same for a container that ends at this byte of the file: what stands behind it is not read; zeros there are no loss. */
 const char *container_rest(int fd, int64_t end);
 
-/* The same for a container that opened and has no entry: empty, or zeros to its end. */
-const char *container_emptiness(int fd);
-
 #endif

@@ -191,9 +191,9 @@ static void out_of_reach(const struct demo_material *m, struct lattice_dims dims
 	double cosine, sine;
 	quarter_cos_sin(m->reach / 90, &cosine, &sine);
 	if (m->reach < 90)
-		lattice_centre_below(dims, cosine, cells, NULL);
+		lattice_centre_below(dims, cosine, cells);
 	else
-		lattice_below_horizon(dims, LATTICE_MERL_HORIZON, cells, NULL);
+		lattice_below_horizon(dims, LATTICE_MERL_HORIZON, cells);
 }
 
 bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, struct lattice *out, bp_error *error)

@@ -8,12 +8,12 @@
 /* Cells at the edge of the database's pattern may be black: a limit so little above its own is its own. */
 static const double DARK_MARGIN = 0.01;
 
+static const double BLACK[3] = {0};
+
 static bool cell_holds(const struct lattice *lattice, size_t n, const double value[3])
 {
 	return lattice->rgb[0][n] == value[0] && lattice->rgb[1][n] == value[1] && lattice->rgb[2][n] == value[2];
 }
-
-static bool is_black(const double value[3]) { return value[0] == 0 && value[1] == 0 && value[2] == 0; }
 
 /* How many cells of each kind there are, and how many of them hold the value. */
 struct tally {
@@ -52,8 +52,11 @@ static struct tally tally_take(const struct lattice *lattice, const uint8_t *mar
 	return tally;
 }
 
-/* The pattern of holes.h: its value, and marks[cells], 1 for cells that are holes where they hold it; all 0: nothing found. */
-static bp_status pattern_find(const struct lattice *lattice, uint8_t *marks, double value[3], bp_error *error)
+/*
+ * The pattern of holes.h: its value, and marks[cells], 1 for cells that are holes where they hold it; all 0: nothing found.
+ * where[cells]: room.
+ */
+static void pattern_find(const struct lattice *lattice, uint8_t *marks, uint8_t *where, double value[3])
 {
 	const struct lattice_dims dims = lattice->dims;
 	const size_t cells = lattice_cells(dims), deepest = lattice_index(dims, dims.theta_h - 1, dims.theta_d - 1, 0);
@@ -61,10 +64,7 @@ static bp_status pattern_find(const struct lattice *lattice, uint8_t *marks, dou
 
 	memset(marks, 0, cells);
 	if (!lattice->valid[deepest])
-		return BP_OK;
-	uint8_t *where = malloc(cells);
-	if (!where)
-		return error_memory(error, cells);
+		return;
 	for (int c = 0; c < 3; c++)
 		value[c] = lattice->rgb[c][deepest];
 	for (size_t n = 0; n < cells; n++) {
@@ -74,23 +74,17 @@ static bp_status pattern_find(const struct lattice *lattice, uint8_t *marks, dou
 	double limit = lattice_lowest_below(dims, marks);
 	if (limit > LATTICE_MERL_HORIZON && limit < LATTICE_MERL_HORIZON + DARK_MARGIN)
 		limit = LATTICE_MERL_HORIZON;
-	bp_status status = lattice_seen(dims, where, error);
-	if (!status) {
-		bit_set(marks, where, cells, CELL_SEEN);
-		status = lattice_centre_below(dims, limit, where, error);
-	}
-	if (!status) {
-		bit_set(marks, where, cells, CELL_UNDER);
-		const struct tally tally = tally_take(lattice, marks);
-		const bool is_edge = tally.deep > 0 && tally.deep >= tally.shallow;
-		const bool is_sharp = limit >= LATTICE_DEEPEST_HORIZON || 2 * tally.shallow_same <= tally.shallow;
-		const bool is_rare = is_black(value) || 2 * tally.seen_same <= tally.seen;
-		const bool found = others && is_edge && is_sharp && is_rare;
-		for (size_t n = 0; n < cells; n++)
-			marks[n] = found && (marks[n] & CELL_UNDER) && (!(marks[n] & CELL_SEEN) || !tally.cut_other);
-	}
-	free(where);
-	return status;
+	lattice_seen(dims, where);
+	bit_set(marks, where, cells, CELL_SEEN);
+	lattice_centre_below(dims, limit, where);
+	bit_set(marks, where, cells, CELL_UNDER);
+	const struct tally tally = tally_take(lattice, marks);
+	const bool is_edge = tally.deep > 0 && tally.deep >= tally.shallow;
+	const bool is_sharp = limit >= LATTICE_DEEPEST_HORIZON || 2 * tally.shallow_same <= tally.shallow;
+	const bool is_rare = memcmp(value, BLACK, sizeof BLACK) == 0 || 2 * tally.seen_same <= tally.seen;
+	const bool found = others && is_edge && is_sharp && is_rare;
+	for (size_t n = 0; n < cells; n++)
+		marks[n] = found && (marks[n] & CELL_UNDER) && (!(marks[n] & CELL_SEEN) || !tally.cut_other);
 }
 
 /* Makes holes of cells that hold the value; where[n]: candidates, NULL: all. */
@@ -106,49 +100,44 @@ static void cells_take(struct lattice *lattice, const double value[3], const uin
 		}
 }
 
-/* The seen cells that hold 0 in all channels and are measured. */
-static bp_status black_count(const struct lattice *lattice, uint8_t *seen, size_t *count, bp_error *error)
+/* How many of the seen cells hold 0 in all channels and are measured. */
+static size_t black_count(const struct lattice *lattice, uint8_t *seen)
 {
-	static const double BLACK[3] = {0};
-	const size_t cells = lattice_cells(lattice->dims);
-	const bp_status status = lattice_seen(lattice->dims, seen, error);
-	for (size_t n = 0; n < cells && !status; n++)
-		*count += lattice->valid[n] && seen[n] && cell_holds(lattice, n, BLACK);
-	return status;
+	size_t count = 0;
+	lattice_seen(lattice->dims, seen);
+	for (size_t n = 0; n < lattice_cells(lattice->dims); n++)
+		count += lattice->valid[n] && seen[n] && cell_holds(lattice, n, BLACK);
+	return count;
 }
 
 bp_status lattice_take_holes(struct lattice *lattice, enum zeros_rule rule, struct holes *out, bp_error *error)
 {
-	static const double BLACK[3] = {0};
 	const size_t cells = lattice_cells(lattice->dims);
-	const bool marked =
-		lattice->valid_count + lattice->nonfinite_count < cells; /* a negative value says that the table marks its holes */
+	/* a negative value says that the table marks its holes */
+	const bool marked = lattice->valid_count + lattice->nonfinite_count < cells;
 	struct holes holes = {0};
-	bp_status status = BP_OK;
 
 	*out = holes;
 	if (rule == ZEROS_MEASURED || (rule == ZEROS_AUTO && marked))
 		return BP_OK;
-	uint8_t *scratch = malloc(cells);
-	if (!scratch)
-		return error_memory(error, cells);
-	if (!marked)
-		status = pattern_find(lattice, scratch, holes.value, error);
-	if (!status && !marked)
-		cells_take(lattice, holes.value, scratch, &holes);
+	uint8_t *room = malloc(2 * cells);
+	if (!room)
+		return error_memory(error, 2 * cells);
+	if (!marked) {
+		pattern_find(lattice, room, room + cells, holes.value);
+		cells_take(lattice, holes.value, room, &holes);
+	}
 	if (!holes.count)
 		memset(holes.value, 0, sizeof holes.value);
-	if (!status && rule == ZEROS_HOLES)
+	if (rule == ZEROS_HOLES)
 		cells_take(lattice, BLACK, NULL, &holes);
 	lattice->valid_count -= holes.count;
-	if (!status && holes.count)
-		status = black_count(lattice, scratch, &holes.black_count, error);
-	free(scratch);
-	if (!status && !lattice->valid_count)
+	holes.black_count = holes.count ? black_count(lattice, room) : 0;
+	free(room);
+	if (!lattice->valid_count)
 		return error_set(
 			error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET,
 			"no valid cell: all that are not negative, NaN or infinite are 0 in all channels, and zeros count as holes");
-	if (!status)
-		*out = holes;
-	return status;
+	*out = holes;
+	return BP_OK;
 }

@@ -39,7 +39,7 @@ struct holes {
 
 /*
  * Makes holes of the lattice by that rule: they become invalid, their planes 0. Costs a comparison where the table has a
- * negative value and the rule is not ZEROS_HOLES. Errors: BP_ERROR_MEMORY (a byte per cell), BP_ERROR_BAD_INPUT where no cell
+ * negative value and the rule is not ZEROS_HOLES. Errors: BP_ERROR_MEMORY (two bytes per cell), BP_ERROR_BAD_INPUT where no cell
  * is left; the lattice is then unspecified.
  */
 bp_status lattice_take_holes(struct lattice *lattice, enum zeros_rule rule, struct holes *out, bp_error *error);

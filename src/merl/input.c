@@ -1,8 +1,31 @@
 #include "input.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "error.h"
+
+bp_status input_open(const char *path, int *fd, uint64_t *bytes, bp_error *error)
+{
+	struct stat about;
+	bp_status status = BP_OK;
+	*fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	if (*fd < 0 || fstat(*fd, &about) != 0)
+		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
+	else if (!S_ISREG(about.st_mode))
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s",
+		                   S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
+	else
+		*bytes = (uint64_t)about.st_size;
+	if (status && *fd >= 0)
+		close(*fd);
+	*fd = status ? -1 : *fd;
+	return status;
+}
 
 bp_status input_fill(struct input *in, void *bytes, size_t count, size_t *got, bp_error *error)
 {

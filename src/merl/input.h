@@ -13,7 +13,14 @@ struct input {
 	struct merl_reading how;
 	uint64_t available; /* bytes of the whole, where that is known; else UINT64_MAX */
 	uint64_t done;
+	struct carried carried; /* what the file carried, where how.carried asks for it */
 };
+
+/*
+ * Opens a regular file and tells its size; a FIFO or a device is refused without waiting for its other side. BP_ERROR_IO,
+ * BP_ERROR_BAD_INPUT: *fd is -1 then, else the caller's to close. Messages do not repeat the path.
+ */
+bp_status input_open(const char *path, int *fd, uint64_t *bytes, bp_error *error);
 
 /* Reads `count` bytes, or fewer at the end of the stream: *got says how many. */
 bp_status input_fill(struct input *in, void *bytes, size_t count, size_t *got, bp_error *error);

@@ -24,11 +24,25 @@ bool lattice_dims_legal(struct lattice_dims dims)
 
 size_t lattice_cells(struct lattice_dims dims) { return (size_t)dims.theta_h * dims.theta_d * dims.phi_d; }
 
-/* Three planes of `plane_bytes` and `extra` bytes in one block; planes[3] is where the extra bytes start. */
-static bp_status planes_alloc(size_t plane_bytes, size_t extra, void **block, unsigned char *planes[4], bp_error *error)
+bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error)
 {
-	const size_t stride = (plane_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-	const size_t bytes = 3 * stride + extra + ALIGNMENT;
+	if (lattice_dims_legal(dims))
+		return BP_OK;
+	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+	                 "lattice of %u x %u x %u: each extent must be %d to %d, %d cells at most", dims.theta_h, dims.theta_d,
+	                 dims.phi_d, LATTICE_EXTENT_MIN, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
+}
+
+/*
+ * Three planes of values of `size` bytes and `extra` bytes for each cell in one block; planes[3] is where the extra ones start.
+ */
+static bp_status planes_alloc(struct lattice_dims dims, size_t size, size_t extra, void **block, void *planes[4], bp_error *error)
+{
+	const bp_status status = lattice_dims_check(dims, error);
+	if (status)
+		return status;
+	const size_t stride = (lattice_cells(dims) * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+	const size_t bytes = 3 * stride + lattice_cells(dims) * extra + ALIGNMENT;
 	/* Not aligned_alloc: a worker's heap, which is kept from material to material, would fill with gaps. */
 	*block = malloc(bytes);
 	if (!*block)
@@ -40,64 +54,37 @@ static bp_status planes_alloc(size_t plane_bytes, size_t extra, void **block, un
 	return BP_OK;
 }
 
-bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error)
-{
-	if (lattice_dims_legal(dims))
-		return BP_OK;
-	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-	                 "lattice of %u x %u x %u: each extent must be %d to %d, %d cells at most", dims.theta_h, dims.theta_d,
-	                 dims.phi_d, LATTICE_EXTENT_MIN, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
-}
-
 bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error)
 {
-	unsigned char *planes[4];
-	bp_status status = lattice_dims_check(dims, error);
-	if (status != BP_OK)
+	void *block, *planes[4];
+	const bp_status status = planes_alloc(dims, sizeof(double), 1, &block, planes, error);
+	if (status)
 		return status;
-	struct lattice lattice = {.dims = dims};
-	const size_t cells = lattice_cells(dims);
-	status = planes_alloc(cells * sizeof(double), cells, &lattice.block, planes, error);
-	if (status != BP_OK)
-		return status;
-	for (int c = 0; c < 3; c++)
-		lattice.rgb[c] = (double *)(void *)planes[c];
-	lattice.valid = planes[3];
-	memset(lattice.valid, 0, cells);
-	*out = lattice;
+	*out = (struct lattice){.dims = dims, .rgb = {planes[0], planes[1], planes[2]}, .valid = planes[3], .block = block};
+	memset(out->valid, 0, lattice_cells(dims));
 	return BP_OK;
 }
 
 void lattice_free(struct lattice *lattice)
 {
-	if (!lattice)
-		return;
 	free(lattice->block);
-	memset(lattice, 0, sizeof *lattice);
+	*lattice = (struct lattice){0};
 }
 
 bp_status expansion_alloc(struct lattice_dims dims, struct expansion *out, bp_error *error)
 {
-	unsigned char *planes[4];
-	bp_status status = lattice_dims_check(dims, error);
-	if (status != BP_OK)
+	void *block, *planes[4];
+	const bp_status status = planes_alloc(dims, sizeof(float), 0, &block, planes, error);
+	if (status)
 		return status;
-	struct expansion expansion = {.dims = dims, .unit = 1};
-	status = planes_alloc(lattice_cells(dims) * sizeof(float), 0, &expansion.block, planes, error);
-	if (status != BP_OK)
-		return status;
-	for (int c = 0; c < 3; c++)
-		expansion.rgb[c] = (float *)(void *)planes[c];
-	*out = expansion;
+	*out = (struct expansion){.dims = dims, .unit = 1, .rgb = {planes[0], planes[1], planes[2]}, .block = block};
 	return BP_OK;
 }
 
 void expansion_free(struct expansion *expansion)
 {
-	if (!expansion)
-		return;
 	free(expansion->block);
-	memset(expansion, 0, sizeof *expansion);
+	*expansion = (struct expansion){0};
 }
 
 enum { CELL_NEGATIVE = 1, CELL_NONFINITE = 2 };

@@ -74,7 +74,7 @@ static inline size_t lattice_index(struct lattice_dims dims, uint32_t i, uint32_
 
 /* Nothing valid, the planes not set: whoever allocates fills all of them. */
 bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error);
-void lattice_free(struct lattice *lattice); /* NULL and a zeroed struct are allowed */
+void lattice_free(struct lattice *lattice); /* a zeroed struct is allowed, as in expansion_free */
 
 /*
  * Sets valid, the counts and `most` from the planes: a cell is valid when all
@@ -107,36 +107,36 @@ void quarter_cos_sin(double t, double *cosine, double *sine);
  * valid cell that lies wholly below, in [-sin 5 degrees, 0] (never below -0.0872). It is one float, rounded down, so that a
  * record may store it as float or double and no cell changes sides.
  *
- * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere. Fails only for dims that are not legal.
+ * lattice_below_horizon: fills below[cells]: 1 below the horizon, 0 elsewhere.
+ *
+ * Dims must be legal here and in what follows, as those of every lattice, expansion, model and record's head are.
  */
 #define LATTICE_MERL_HORIZON -0.061003               /* the database's own limit */
 #define LATTICE_DEEPEST_HORIZON -0.08715574274765817 /* -sin 5 degrees */
 double lattice_horizon_limit(const struct lattice *lattice);
-bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error);
+void lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below);
 
 /*
  * What both are made of. lattice_lowest_below: the lowest smaller cosine at the centre of a cell that lies wholly below and
  * has mask[cell] != 0; 0 where there is none. lattice_centre_below: fills below[cells], 1 where the smaller cosine at the centre
- * is below the limit, whether or not a part of the cell lies above the horizon. dims must be legal; the latter fails for others.
+ * is below the limit, whether or not a part of the cell lies above the horizon.
  */
 double lattice_lowest_below(struct lattice_dims dims, const uint8_t *mask);
-bp_status lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error);
+void lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below);
 
 /*
  * Which cells can be seen: fills seen[cells], 1 where both directions are above the horizon somewhere in the cell. The others
- * reach a picture only as neighbours in interpolation, by less than a half. Fails only for dims that are not legal.
+ * reach a picture only as neighbours in interpolation, by less than a half.
  */
-bp_status lattice_seen(struct lattice_dims dims, uint8_t *seen, bp_error *error);
+void lattice_seen(struct lattice_dims dims, uint8_t *seen);
 
 /*
  * The smaller of the two cosines, max(0, min(cos theta_i, cos theta_o)) at the cell's lower corner:
- * fills cosine[theta_d phi_d] for one index of theta_h. Freed with free(); 40 KB. It is the weight of the
+ * fills cosine[theta_d phi_d] for one index of theta_h. It is the weight of the
  * cube-root figure (model/fidelity.h) as that is defined, in records too; at centres the figure
  * of surrogates would be 2 to 5 % smaller.
  */
-struct corner_cosines;
-bp_status corner_cosines_create(struct lattice_dims dims, struct corner_cosines **out, bp_error *error);
-void corner_cosines_slice(const struct corner_cosines *cosines, uint32_t theta_h, float *cosine);
+void lattice_corner_cosines(struct lattice_dims dims, uint32_t theta_h, float *cosine);
 
 /*
  * A decoded table: planes of float, in units of `unit` (1/sr): value = unit * rgb[c][cell].

@@ -2,10 +2,8 @@
  * lattice_horizon.c: the lattice's cosines, and from them what lies below the horizon.
  */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
 #include "lattice.h"
 
 void quarter_cos_sin(double t, double *cosine, double *sine)
@@ -123,31 +121,18 @@ static void below_fill(struct lattice_dims dims, double limit, const struct cosi
 		}
 }
 
-bp_status lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
+void lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below)
 {
 	struct cosines highest;
-	const bp_status status = lattice_dims_check(dims, error);
-	if (status != BP_OK)
-		return status;
 	highest_fill(dims, &highest);
 	below_fill(dims, limit, &highest, below);
-	return BP_OK;
 }
 
-bp_status lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below, bp_error *error)
-{
-	const bp_status status = lattice_dims_check(dims, error);
-	if (status == BP_OK)
-		below_fill(dims, limit, NULL, below);
-	return status;
-}
+void lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below) { below_fill(dims, limit, NULL, below); }
 
-bp_status lattice_seen(struct lattice_dims dims, uint8_t *seen, bp_error *error)
+void lattice_seen(struct lattice_dims dims, uint8_t *seen)
 {
 	struct cosines highest;
-	bp_status status = lattice_dims_check(dims, error);
-	if (status != BP_OK)
-		return status;
 	highest_fill(dims, &highest);
 	double least = 1, most = 0;
 	for (uint32_t k = 0; k < dims.phi_d; k++) {
@@ -165,35 +150,16 @@ bp_status lattice_seen(struct lattice_dims dims, uint8_t *seen, bp_error *error)
 			for (uint32_t k = 0; k < dims.phi_d; k++)
 				seen[k] = a - q * highest.cos_p[k] > 0;
 		}
-	return BP_OK;
 }
 
-struct corner_cosines {
-	struct lattice_dims dims;
+void lattice_corner_cosines(struct lattice_dims dims, uint32_t theta_h, float *cosine)
+{
 	struct cosines corner;
-};
-
-bp_status corner_cosines_create(struct lattice_dims dims, struct corner_cosines **out, bp_error *error)
-{
-	bp_status status = lattice_dims_check(dims, error);
-	if (status != BP_OK)
-		return status;
-	*out = malloc(sizeof **out);
-	if (!*out)
-		return error_memory(error, sizeof **out);
-	(*out)->dims = dims;
-	cosines_fill(dims, 0, 1, &(*out)->corner);
-	return BP_OK;
-}
-
-void corner_cosines_slice(const struct corner_cosines *cosines, uint32_t theta_h, float *cosine)
-{
-	const struct cosines *corner = &cosines->corner;
-	const struct lattice_dims dims = cosines->dims;
+	cosines_fill(dims, 0, 1, &corner);
 	for (uint32_t j = 0; j < dims.theta_d; j++, cosine += dims.phi_d) {
-		const double a = corner->cos_d[j] * corner->cos_h[theta_h], q = corner->sin_d[j] * corner->sin_h[theta_h];
+		const double a = corner.cos_d[j] * corner.cos_h[theta_h], q = corner.sin_d[j] * corner.sin_h[theta_h];
 		for (uint32_t k = 0; k < dims.phi_d; k++) {
-			const double smaller = a - q * corner->cos_p[k];
+			const double smaller = a - q * corner.cos_p[k];
 			cosine[k] = (float)(smaller > 0 ? smaller : 0);
 		}
 	}

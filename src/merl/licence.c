@@ -6,12 +6,13 @@
 #include <string.h>
 #include <strings.h>
 
+#include "name.h"
 #include "source_names.h"
 
 static bool is_licence(const char *path)
 {
 	static const char *const BEGINNINGS[] = {"copying", "copyright", "notice", "terms"};
-	const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+	const char *name = name_in_path(path);
 	for (size_t n = 0; n < sizeof BEGINNINGS / sizeof *BEGINNINGS; n++)
 		if (strncasecmp(name, BEGINNINGS[n], strlen(BEGINNINGS[n])) == 0)
 			return true;
@@ -27,6 +28,11 @@ void licences_note(struct licences *licences, const char *path, const char *memb
 		free(shown);
 		shown = whole;
 	}
+	for (size_t n = 0; shown && n < licences->count; n++)
+		if (!strcmp(licences->path[n], shown)) { /* of an input that was given twice */
+			free(shown);
+			shown = NULL;
+		}
 	if (shown)
 		licences->path[licences->count++] = shown;
 }

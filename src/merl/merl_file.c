@@ -1,13 +1,11 @@
 #include "merl_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "error.h"
@@ -84,24 +82,19 @@ static bp_status size_check(const struct input *in, uint64_t expected, bp_error 
 	return BP_OK;
 }
 
-/* A MERL file behind its header. */
+/* A MERL file behind its header. *out is the caller's to free in any case. */
 static bp_status table_read(struct input *in, struct lattice_dims dims, struct lattice *out, bp_error *error)
 {
 	struct carried_reader carried = {.values = 3 * lattice_cells(dims)};
 	bp_status status = size_check(in, merl_file_bytes(dims), error);
 	if (status == BP_OK)
 		status = lattice_alloc(dims, out, error);
-	if (status != BP_OK)
-		return status;
-	status = planes_read(in, out, &carried, error);
-	if (status != BP_OK || !carried.whole) {
+	if (status == BP_OK)
+		status = planes_read(in, out, &carried, error);
+	if (status == BP_OK && carried.whole)
+		in->carried = (struct carried){carried.bytes, carried.count};
+	else
 		free(carried.bytes);
-		carried.bytes = NULL;
-	}
-	if (in->how.carried)
-		*in->how.carried = (struct carried){.bytes = carried.bytes, .count = carried.bytes ? carried.count : 0};
-	if (status != BP_OK)
-		lattice_free(out);
 	return status;
 }
 
@@ -140,9 +133,6 @@ static bp_status input_read(merl_read_fn *read, void *user, uint64_t available, 
 	struct input in = {.read = read, .user = user, .how = reading ? *reading : (struct merl_reading){0}, .available = available};
 	struct origin origin = {.kind = ORIGIN_MERL};
 	struct lattice lattice = {0};
-	struct carried carried = {0};
-	if (in.how.carried)
-		in.how.carried = &carried;
 	bp_status status = kind_read(&in, &lattice, &origin, error);
 	if (status == BP_OK && !lattice.valid_count)
 		status = error_set(
@@ -150,11 +140,11 @@ static bp_status input_read(merl_read_fn *read, void *user, uint64_t available, 
 			origin.kind == ORIGIN_MERL ? "negative, NaN or infinite in some channel" : "without data in some direction");
 	if (status != BP_OK) {
 		lattice_free(&lattice);
-		free(carried.bytes);
+		free(in.carried.bytes);
 		return status;
 	}
 	if (in.how.carried)
-		*reading->carried = carried;
+		*in.how.carried = in.carried;
 	if (in.how.origin)
 		*in.how.origin = origin;
 	if (in.how.file_bytes)
@@ -185,23 +175,13 @@ static bp_status descriptor_read(void *user, void *bytes, size_t capacity, size_
 
 bp_status lattice_read_path(const char *path, const struct merl_reading *reading, struct lattice *out, bp_error *error)
 {
-	bp_status status;
-	struct stat about;
-	/* O_NONBLOCK: opening a FIFO or a device must not wait for its other side */
-	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-	if (fd < 0 || fstat(fd, &about) != 0) {
-		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot open: %s", strerror(errno));
-		goto out;
-	}
-	if (!S_ISREG(about.st_mode)) {
-		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s",
-		                   S_ISDIR(about.st_mode) ? "a folder, not a file" : "not a regular file");
-		goto out;
-	}
-	status = input_read(descriptor_read, &fd, (uint64_t)about.st_size, reading, out, error);
-out:
-	if (fd >= 0)
-		close(fd);
+	int fd;
+	uint64_t bytes;
+	bp_status status = input_open(path, &fd, &bytes, error);
+	if (status)
+		return status;
+	status = input_read(descriptor_read, &fd, bytes, reading, out, error);
+	close(fd);
 	return status;
 }
 

@@ -5,10 +5,9 @@
 #include <string.h>
 #include <uchar.h>
 
+#include "bytes.h"
 #include "memory.h"
 #include "name.h"
-
-enum { NORMAL_BYTES = 4096 };
 
 static const struct {
 	uint16_t mark;
@@ -40,38 +39,25 @@ static const struct decomposition *decomposition_find(uint32_t code)
 	return code > UINT16_MAX ? NULL : bsearch(&key, all, count, sizeof *all, composed_compare);
 }
 
-struct text {
-	char *bytes;
-	size_t used, room;
-	bool full;
-};
-
-static void byte_put(struct text *text, uint32_t byte)
-{
-	text->full |= text->used + 1 >= text->room;
-	if (!text->full)
-		text->bytes[text->used++] = (char)byte;
-}
-
-static void code_put(struct text *text, uint32_t code)
+static void code_put(struct byte_buffer *out, uint32_t code)
 {
 	static const uint8_t LEAD[] = {0, 0xC0, 0xE0, 0xF0};
 	const uint32_t more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
-	byte_put(text, LEAD[more] | code >> (6 * more));
+	write_u8(out, (uint8_t)(LEAD[more] | code >> (6 * more)));
 	for (uint32_t n = more; n-- > 0;)
-		byte_put(text, 0x80 | (code >> (6 * n) & 0x3F));
+		write_u8(out, (uint8_t)(0x80 | (code >> (6 * n) & 0x3F)));
 }
 
 /* Bases are decomposed in turn, marks are not composed. */
-static void code_decompose(struct text *text, uint32_t code)
+static void code_decompose(struct byte_buffer *out, uint32_t code)
 {
 	enum { HANGUL = 0xAC00, HANGUL_COUNT = 11172, L = 0x1100, V = 0x1161, T = 0x11A7, V_COUNT = 21, T_COUNT = 28 };
 	if (code >= HANGUL && code < HANGUL + HANGUL_COUNT) {
 		const uint32_t n = code - HANGUL;
-		code_put(text, L + n / (V_COUNT * T_COUNT));
-		code_put(text, V + n / T_COUNT % V_COUNT);
+		code_put(out, L + n / (V_COUNT * T_COUNT));
+		code_put(out, V + n / T_COUNT % V_COUNT);
 		if (n % T_COUNT)
-			code_put(text, T + n % T_COUNT);
+			code_put(out, T + n % T_COUNT);
 		return;
 	}
 	uint32_t marks[8];
@@ -81,54 +67,52 @@ static void code_decompose(struct text *text, uint32_t code)
 		if (found->mark)
 			marks[count++] = found->mark;
 	}
-	code_put(text, code);
+	code_put(out, code);
 	while (count)
-		code_put(text, marks[--count]);
+		code_put(out, marks[--count]);
 }
 
-bool normal_form(const char *text, char *out, size_t room)
+/* The decomposed text, malloc'ed. NULL: it is ASCII, which has one spelling only, or there is no memory. */
+static char *normal_form(const char *text)
 {
-	struct text form = {.bytes = out, .room = room};
-	const uint8_t *at = (const uint8_t *)text;
-	for (size_t left = strlen(text), step; left > 0 && !form.full; at += step, left -= step) {
+	struct byte_buffer form = {0};
+	bool is_ascii = true;
+	size_t step;
+	for (const uint8_t *at = (const uint8_t *)text; *at; at += step) {
 		uint32_t code = 0;
-		step = name_character(at, left, &code);
+		is_ascii &= *at < 0x80;
+		step = name_character(at, 4, &code); /* the NUL ends it sooner */
 		if (step)
 			code_decompose(&form, code);
 		else
-			byte_put(&form, at[0]);
+			write_u8(&form, *at);
 		step += !step;
 	}
-	out[form.used] = '\0';
-	return !form.full;
-}
-
-static bool is_ascii(const char *text)
-{
-	while (*text && (uint8_t)*text < 0x80)
-		text++;
-	return !*text;
+	write_u8(&form, 0);
+	if (is_ascii || form.failed)
+		byte_buffer_free(&form);
+	return (char *)form.bytes;
 }
 
 bool normal_form_equal(const char *a, const char *b)
 {
-	char x[NORMAL_BYTES], y[NORMAL_BYTES];
-	return !is_ascii(a) && !is_ascii(b) && strcmp(a, b) != 0 && normal_form(a, x, sizeof x) && normal_form(b, y, sizeof y) &&
-	       !strcmp(x, y);
+	char *x = strcmp(a, b) != 0 ? normal_form(a) : NULL, *y = x ? normal_form(b) : NULL;
+	const bool equal = y && !strcmp(x, y);
+	free(x);
+	free(y);
+	return equal;
 }
 
 void normal_forms_add(struct normal_forms *forms, const char *text, size_t number)
 {
-	char form[NORMAL_BYTES];
-	if (is_ascii(text) || !normal_form(text, form, sizeof form))
+	char *form = normal_form(text);
+	struct normal_form_entry *entry = form ? memory_grown(forms->entry, forms->count, sizeof *entry) : NULL;
+	if (!entry) {
+		free(form);
 		return;
-	struct normal_form_entry *entry = memory_grown(forms->entry, forms->count, sizeof *entry);
-	if (!entry)
-		return;
+	}
 	forms->entry = entry;
-	char *copy = strdup(form);
-	if (copy)
-		forms->entry[forms->count++] = (struct normal_form_entry){.form = copy, .number = number};
+	forms->entry[forms->count++] = (struct normal_form_entry){.form = form, .number = number};
 	forms->sorted = false;
 }
 
@@ -139,8 +123,8 @@ static int entry_compare(const void *a, const void *b)
 
 bool normal_forms_find(struct normal_forms *forms, const char *text, size_t *number)
 {
-	char form[NORMAL_BYTES];
-	if (forms->count == 0 || is_ascii(text) || !normal_form(text, form, sizeof form))
+	char *form = forms->count ? normal_form(text) : NULL;
+	if (!form)
 		return false;
 	if (!forms->sorted)
 		qsort(forms->entry, forms->count, sizeof *forms->entry, entry_compare);
@@ -149,6 +133,7 @@ bool normal_forms_find(struct normal_forms *forms, const char *text, size_t *num
 	const struct normal_form_entry *found = bsearch(&key, forms->entry, forms->count, sizeof key, entry_compare);
 	if (found)
 		*number = found->number;
+	free(form);
 	return found;
 }
 

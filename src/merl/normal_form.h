@@ -9,12 +9,9 @@
 #include <stddef.h>
 
 /*
- * The text with every letter taken apart into its base and marks (canonical decomposition; the order of marks is left as it is),
- * in out[room], NUL-terminated. What is not UTF-8 stays as it is. False when there is no room.
+ * Whether two different texts are spellings of one: the same with every letter taken apart into its base and marks (canonical
+ * decomposition; the order of marks is left as it is). What is not UTF-8 stays as it is. False without memory.
  */
-bool normal_form(const char *text, char *out, size_t room);
-
-/* Whether two different texts are spellings of one. */
 bool normal_form_equal(const char *a, const char *b);
 
 /* Texts to be recognised in another spelling; zeroed to begin with. ASCII has one spelling only, and is not kept. */

@@ -21,4 +21,18 @@ struct origin {
 	double median, percentile95; /* over these, of |a - b| / ((a + b) / 2), a and b the channels' mean in the two directions */
 };
 
+enum { RECIPROCITY_BINS = 2000 };
+
+/* How often that, 0 to 2, fell into each step of 1/1000. Start from a zeroed struct. */
+struct reciprocity {
+	uint64_t bins[RECIPROCITY_BINS + 1];
+	uint64_t count;
+};
+
+/* One pair of values, not negative. */
+void reciprocity_add(struct reciprocity *reciprocity, double a, double b);
+
+/* Sets compared, median and percentile95, each to the middle of its step; 0 where nothing was compared. */
+void reciprocity_tell(const struct reciprocity *reciprocity, struct origin *origin);
+
 #endif

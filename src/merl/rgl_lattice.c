@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "error.h"
-#include "reciprocity.h"
 
 #define PI 3.14159265358979323846
 #define COSINE_LEAST 1e-3 /* of a part of a cell whose centre is measured */

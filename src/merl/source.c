@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "memory.h"
+#include "name.h"
 #include "output_path.h"
 #include "source_names.h"
 
@@ -26,19 +27,17 @@ static void notice(struct source_list *list, enum source_notice kind, const char
 static bp_status refuse(struct source_list *list, const char *name, const char *path, const char *member, const char *reason,
                         bp_error *error)
 {
-	struct source_item item = {
-		.name = source_text_shown(name), .path = strdup(path), .member = member ? source_text_shown(member) : NULL};
+	struct source_item item;
 	char *where = NULL;
-	bp_status status = BP_OK;
-	if (!item.name || !item.path || (member && !item.member) ||
-	    asprintf(&where, "%s%s%s", path, member ? ": " : "", member ? item.member : "") < 0) {
+	bp_status status = source_item_fill(&item, name, path, member, true, error);
+	if (!status && asprintf(&where, "%s%s%s", path, member ? ": " : "", member ? item.member : "") < 0) {
 		where = NULL;
 		status = error_memory(error, strlen(path));
-	} else if (list->options.refused) {
-		list->options.refused(list->options.user, &item, reason);
-	} else if (list->options.notice) {
-		list->options.notice(list->options.user, SOURCE_DAMAGED, where, reason);
 	}
+	if (!status && list->options.refused)
+		list->options.refused(list->options.user, &item, reason);
+	else if (!status && list->options.notice)
+		list->options.notice(list->options.user, SOURCE_DAMAGED, where, reason);
 	list->refused_count++;
 	free(where);
 	source_item_clear(&item);
@@ -50,50 +49,46 @@ static bp_status item_add(struct source_list *list, const char *path, const stru
 {
 	char name[SOURCE_STEM_BYTES];
 	bp_error why;
-	const bp_status fault = source_name_make(path, member ? member->path : NULL, member ? member->fault : NULL, name, &why);
+	const char *const inner = member ? member->path : NULL;
+	const bp_status fault = source_name_make(path, inner, member ? member->fault : NULL, name, &why);
 	if (!source_is_wanted(list, name)) {
 		list->unwanted_count++;
 		return BP_OK;
 	}
 	if (fault)
-		return refuse(list, name, path, member ? member->path : NULL, why.message, error);
+		return refuse(list, name, path, inner, why.message, error);
 	struct source_item *items = memory_grown(list->items, list->item_count, sizeof *items);
 	if (!items)
 		return error_memory(error, 2 * list->item_count * sizeof *items);
 	list->items = items;
-	bp_status status = source_item_fill(&items[list->item_count], name, path, member, error);
-	if (status != BP_OK)
+	struct source_item *item = &items[list->item_count];
+	const bp_status status = source_item_fill(item, name, path, inner, false, error);
+	if (status)
 		return status;
-	if (!member)
-		items[list->item_count].bytes = bytes;
+	item->ordinal = member ? member->ordinal : 0;
+	item->bytes = member ? member->bytes : bytes;
 	list->item_count++;
 	return BP_OK;
 }
 
 static bp_status stream_add(struct source_list *list, const char *path, bool named, bp_error *error)
 {
-	char **streams = memory_grown(list->streams, list->stream_count, sizeof *streams);
-	bool *marks = streams ? memory_grown(list->stream_named, list->stream_count, sizeof *marks) : NULL;
-	if (streams)
-		list->streams = streams;
-	if (marks)
-		list->stream_named = marks;
-	char *copy = marks ? strdup(path) : NULL;
-	if (!copy)
-		return error_memory(error, strlen(path));
 	/* in the order of their paths, and each once, so that the order of the inputs decides nothing */
 	size_t at = list->stream_count;
-	while (at > 0 && strcmp(streams[at - 1], path) > 0)
+	while (at > 0 && strcmp(list->streams[at - 1].path, path) > 0)
 		at--;
-	if (at > 0 && !strcmp(streams[at - 1], path)) {
-		marks[at - 1] |= named;
-		free(copy);
+	if (at > 0 && !strcmp(list->streams[at - 1].path, path)) {
+		list->streams[at - 1].named |= named;
 		return BP_OK;
 	}
+	struct source_stream *streams = memory_grown(list->streams, list->stream_count, sizeof *streams);
+	if (streams)
+		list->streams = streams;
+	char *copy = streams ? strdup(path) : NULL;
+	if (!copy)
+		return error_memory(error, strlen(path));
 	memmove(streams + at + 1, streams + at, (list->stream_count - at) * sizeof *streams);
-	memmove(marks + at + 1, marks + at, (list->stream_count - at) * sizeof *marks);
-	streams[at] = copy;
-	marks[at] = named;
+	streams[at] = (struct source_stream){.path = copy, .named = named};
 	list->stream_count++;
 	return BP_OK;
 }
@@ -127,9 +122,10 @@ static bp_status container_add(struct source_list *list, const char *path, bool 
 		if (more && (status = item_add(list, path, &member, 0, error)) != BP_OK)
 			break;
 	}
-	if (container_remark(container) && status == BP_OK)
-		notice(list, SOURCE_DAMAGED, path, container_remark(container));
-	list->ignored_count += container_ignored(container);
+	const struct container_sums *sums = container_sums(container);
+	if (sums->remark && status == BP_OK)
+		notice(list, SOURCE_DAMAGED, path, sums->remark);
+	list->ignored_count += sums->ignored;
 	source_licences_take(list, path, container);
 	container_close(container);
 	return status;
@@ -226,12 +222,6 @@ static bp_status thing_add(struct source_list *list, const char *path, bool name
 	return BP_OK;
 }
 
-static bool is_hidden(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return (slash ? slash[1] : path[0]) == '.';
-}
-
 /* One file, folder or other thing; `named`: the user gave this very path. */
 static bp_status path_add(struct source_list *list, const char *path, bool named, struct visited *visited, int depth,
                           bp_error *error)
@@ -251,7 +241,7 @@ static bp_status path_add(struct source_list *list, const char *path, bool named
 	if (!S_ISREG(about.st_mode))
 		return thing_add(list, path, named, kind_text(about.st_mode), error);
 	enum source_kind kind = named ? source_kind_by_content(path) : source_kind_by_name(path);
-	if (kind == SOURCE_KIND_OTHER && !is_hidden(path) && source_is_tensor_file(path))
+	if (kind == SOURCE_KIND_OTHER && name_in_path(path)[0] != '.' && source_is_tensor_file(path))
 		kind = SOURCE_KIND_MEASURED;
 	switch (kind) {
 	case SOURCE_KIND_MEASURED: return item_add(list, path, NULL, (uint64_t)about.st_size, error);
@@ -363,10 +353,9 @@ void source_list_free(struct source_list *list)
 	for (size_t n = 0; n < list->item_count; n++)
 		source_item_clear(&list->items[n]);
 	for (size_t n = 0; n < list->stream_count; n++)
-		free(list->streams[n]);
+		free(list->streams[n].path);
 	free(list->items);
 	free(list->streams);
-	free(list->stream_named);
 	licences_free(&list->licences);
 	source_names_free(list->names);
 	*list = (struct source_list){0};

@@ -50,8 +50,10 @@ struct source_item {
 struct source_list {
 	struct source_item *items; /* in ascending byte order of names */
 	size_t item_count;
-	char **streams;     /* paths, in ascending byte order */
-	bool *stream_named; /* of each, whether the user gave this very path */
+	struct source_stream {
+		char *path;
+		bool named; /* the user gave this very path */
+	} * streams;    /* in ascending byte order of paths */
 	size_t stream_count;
 	size_t ignored_count;                /* files that are neither measured files nor containers by their name */
 	struct licences licences;            /* of these, texts of licences */
@@ -60,7 +62,7 @@ struct source_list {
 	size_t refused_count;                /* materials that cannot be packed */
 	struct source_options options;
 	void *names;      /* who has which name */
-	const void *told; /* the stream whose emptiness was told */
+	const void *told; /* the container of a stream, whose emptiness or fault was told */
 };
 
 /*
@@ -77,15 +79,18 @@ void source_list_free(struct source_list *list);
 const struct source_item *source_list_find(const struct source_list *list, const char *name);
 
 /*
- * The next wanted material of a stream that the caller opened (CONTAINER_SEQUENTIAL): *out belongs
+ * The next wanted material of stream `number`, which the caller opened (CONTAINER_SEQUENTIAL): *out belongs
  * to the caller (source_item_clear); read it with container_read. *more = false at the end.
  * Errors concern one member, as in container_next. Where that is a material which is refused, *out says which, as for
  * options->refused, and belongs to the caller too; otherwise out->name is NULL, and messages name the member.
  */
-bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
+bp_status source_stream_next(struct source_list *list, size_t number, struct container *stream, struct source_item *out,
                              bool *more, bp_error *error);
-/* An item's strings: copies are made (BP_ERROR_MEMORY: none), and freed. member may be NULL. */
-bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member,
+/*
+ * An item's strings: copies are made, of name and member as people are shown them where the item is refused (BP_ERROR_MEMORY:
+ * none), and freed. member may be NULL.
+ */
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const char *member, bool refused,
                            bp_error *error);
 void source_item_clear(struct source_item *item);
 

@@ -6,57 +6,47 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "name.h"
 #include "rgl/tensor_file.h"
 
 enum { HEAD_BYTES = 512 };
 
-static bool ends_with(const char *text, const char *suffix)
-{
-	const size_t text_bytes = strlen(text), suffix_bytes = strlen(suffix);
-	return text_bytes > suffix_bytes && strcasecmp(text + text_bytes - suffix_bytes, suffix) == 0;
-}
-
 const char *const SOURCE_SUFFIXES[] = {".binary", ".bsdf", NULL};
 static const char *const COMPRESSIONS[] = {".gz", ".bz2", ".xz", ".lzma", ".zst", ".Z", NULL};
+static const char *const TAR[] = {".tar", NULL};
 static const char *const ARCHIVES[] = {".zip", ".tar", ".tgz", ".tbz", ".tbz2", ".txz", ".tzst", NULL};
 
 /* Containers that are not read, and parts of split ones: they may hold materials, so they are not passed over in silence. */
 static const char *const FOREIGN[] = {".7z", ".rar", ".lz", ".lz4", ".lzo", ".br", ".cab", ".z01", ".001", NULL};
 
-static const char *suffix_among(const char *name, const char *const *suffixes)
+/* How many of the first `bytes` bytes of a name are one of these suffixes, in either case, behind something else. */
+static size_t suffix_among(const char *name, size_t bytes, const char *const *suffixes)
 {
-	while (*suffixes && !ends_with(name, *suffixes))
-		suffixes++;
-	return *suffixes;
+	for (; *suffixes; suffixes++) {
+		const size_t suffix = strlen(*suffixes);
+		if (bytes > suffix && strncasecmp(name + bytes - suffix, *suffixes, suffix) == 0)
+			return suffix;
+	}
+	return 0;
 }
 
-static const char *base_name(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return slash ? slash + 1 : path;
-}
+/* A name's bytes without what says that it is compressed. */
+static size_t unpacked_bytes(const char *name) { return strlen(name) - suffix_among(name, strlen(name), COMPRESSIONS); }
 
 enum source_kind source_kind_by_name(const char *path)
 {
-	const char *name = base_name(path);
+	const char *name = name_in_path(path);
+	const size_t bytes = strlen(name), unpacked = unpacked_bytes(name);
 	if (name[0] == '.')
 		return SOURCE_KIND_OTHER;
-	if (suffix_among(name, SOURCE_SUFFIXES))
+	if (suffix_among(name, bytes, SOURCE_SUFFIXES))
 		return SOURCE_KIND_MEASURED;
-	if (suffix_among(name, ARCHIVES))
+	if (suffix_among(name, bytes, ARCHIVES))
 		return SOURCE_KIND_CONTAINER;
-	if (suffix_among(name, FOREIGN))
+	if (suffix_among(name, bytes, FOREIGN))
 		return SOURCE_KIND_FOREIGN;
-	const char *compression = suffix_among(name, COMPRESSIONS);
-	if (!compression)
-		return SOURCE_KIND_OTHER;
-	char inner[SOURCE_STEM_BYTES];
-	const size_t bytes = strlen(name) - strlen(compression);
-	if (bytes >= sizeof inner)
-		return SOURCE_KIND_OTHER;
-	memcpy(inner, name, bytes);
-	inner[bytes] = '\0';
-	return suffix_among(inner, SOURCE_SUFFIXES) || ends_with(inner, ".tar") ? SOURCE_KIND_CONTAINER : SOURCE_KIND_OTHER;
+	const bool holds_one = suffix_among(name, unpacked, SOURCE_SUFFIXES) || suffix_among(name, unpacked, TAR);
+	return unpacked < bytes && holds_one ? SOURCE_KIND_CONTAINER : SOURCE_KIND_OTHER;
 }
 
 /* The first bytes, zeros behind the end and where there is nothing to read. */
@@ -112,25 +102,14 @@ enum source_kind source_kind_by_content(const char *path)
 
 size_t source_suffix_bytes(const char *name)
 {
-	char inner[SOURCE_STEM_BYTES];
-	const char *compression = suffix_among(name, COMPRESSIONS);
-	const size_t packed = compression ? strlen(compression) : 0, bytes = strlen(name) - packed;
-	if (bytes >= sizeof inner)
-		return 0;
-	memcpy(inner, name, bytes);
-	inner[bytes] = '\0';
-	const char *suffix = suffix_among(inner, SOURCE_SUFFIXES);
-	return suffix ? strlen(suffix) + packed : 0;
+	const size_t unpacked = unpacked_bytes(name), suffix = suffix_among(name, unpacked, SOURCE_SUFFIXES);
+	return suffix ? suffix + strlen(name) - unpacked : 0;
 }
 
 void source_stem(const char *path, char name[SOURCE_STEM_BYTES])
 {
-	const char *base = base_name(path);
-	size_t bytes = strlen(base);
-	const char *compression = suffix_among(base, COMPRESSIONS);
-	if (compression)
-		bytes -= strlen(compression);
-	size_t dot = bytes;
+	const char *base = name_in_path(path);
+	size_t bytes = unpacked_bytes(base), dot = bytes;
 	while (dot > 0 && base[dot - 1] != '.')
 		dot--;
 	if (dot > 1) /* x.binary, not .binary */

@@ -15,24 +15,20 @@ void source_item_clear(struct source_item *item)
 	*item = (struct source_item){0};
 }
 
-bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const struct container_member *member,
+bp_status source_item_fill(struct source_item *item, const char *name, const char *path, const char *member, bool refused,
                            bp_error *error)
 {
-	*item = (struct source_item){.name = strdup(name), .path = strdup(path), .member = member ? strdup(member->path) : NULL};
-	if (!item->name || !item->path || (member && !item->member)) {
-		source_item_clear(item);
-		return error_memory(error, strlen(path));
-	}
-	if (member) {
-		item->ordinal = member->ordinal;
-		item->bytes = member->bytes;
-	}
-	return BP_OK;
+	char *(*const copy)(const char *) = refused ? source_text_shown : strdup;
+	*item = (struct source_item){.name = copy(name), .path = strdup(path), .member = member ? copy(member) : NULL};
+	if (item->name && item->path && (!member || item->member))
+		return BP_OK;
+	source_item_clear(item);
+	return error_memory(error, strlen(path));
 }
 
 void source_licences_take(struct source_list *list, const char *path, const struct container *container)
 {
-	const struct licences *found = container_licences(container);
+	const struct licences *found = &container_sums(container)->licences;
 	for (size_t n = 0; n < found->count; n++)
 		licences_note(&list->licences, path, found->path[n]);
 }
@@ -42,61 +38,41 @@ bool source_is_wanted(const struct source_list *list, const char *name)
 	return !list->options.wanted || list->options.wanted(list->options.user, name);
 }
 
-static bool stream_is_named(const struct source_list *list, const char *path)
-{
-	for (size_t n = 0; n < list->stream_count; n++)
-		if (!strcmp(list->streams[n], path))
-			return list->stream_named[n];
-	return false;
-}
-
 /* A member that is wanted: taken, or refused with *out filled all the same. */
 static bp_status member_take(struct source_list *list, const char *path, const struct container_member *member, const char *name,
                              bp_status fault, struct source_item *out, bp_error *error)
 {
-	bp_status status = fault ? fault : source_name_claim(&list->names, name, path, member->path, error);
-	bp_error memory;
-	if (source_item_fill(out, name, path, member, &memory)) {
-		*error = memory;
-		return memory.status;
-	}
-	if (!status)
-		return BP_OK;
-	char *shown = source_text_shown(out->name), *shown_member = source_text_shown(out->member);
-	if (shown && shown_member) {
-		free(out->name);
-		free(out->member);
-		out->name = shown;
-		out->member = shown_member;
-	} else {
-		free(shown);
-		free(shown_member);
-	}
-	list->refused_count++;
+	const bp_status status = fault ? fault : source_name_claim(&list->names, name, path, member->path, error);
+	if (source_item_fill(out, name, path, member->path, status != BP_OK, error))
+		return BP_ERROR_MEMORY;
+	out->ordinal = member->ordinal;
+	out->bytes = member->bytes;
+	list->refused_count += status != BP_OK;
 	return status;
 }
 
-bp_status source_stream_next(struct source_list *list, const char *path, struct container *stream, struct source_item *out,
+bp_status source_stream_next(struct source_list *list, size_t number, struct container *stream, struct source_item *out,
                              bool *more, bp_error *error)
 {
+	const struct container_sums *sums = container_sums(stream);
+	const char *path = list->streams[number].path;
 	struct container_member member;
 	char name[SOURCE_STEM_BYTES];
 	*out = (struct source_item){0};
 	for (;;) {
-		const size_t ignored = container_ignored(stream);
+		const size_t ignored = sums->ignored;
 		bp_status status = container_next(stream, &member, more, error);
-		list->ignored_count += container_ignored(stream) - ignored;
+		list->ignored_count += sums->ignored - ignored;
 		if (status != BP_OK)
 			return status;
 		if (!*more) {
 			source_licences_take(list, path, stream);
-			const char *remark = container_remark(stream);
-			const bool tell = list->told != stream && (remark || (container_members(stream) == 0 && stream_is_named(list, path)));
+			const bool tell = list->told != stream && (sums->remark || (sums->members == 0 && list->streams[number].named));
 			list->told = tell ? stream : NULL;
 			if (!tell)
 				return BP_OK;
-			return remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", remark)
-			              : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, SOURCE_EMPTY, container_ignored(stream));
+			return sums->remark ? error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "%s", sums->remark)
+			                    : error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, SOURCE_EMPTY, sums->ignored);
 		}
 		const bp_status fault = source_name_make(path, member.path, member.fault, name, error);
 		if (source_is_wanted(list, name))

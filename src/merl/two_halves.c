@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "error.h"
-#include "reciprocity.h"
 
 enum { ROW = 180, HEADER_BYTES = 12 };
 

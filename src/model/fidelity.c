@@ -30,13 +30,11 @@ static void slice_add(const struct lattice *truth, const struct expansion *table
 	}
 }
 
-bp_status fidelity_measure_all(const struct lattice *truth, const struct expansion *tables, uint32_t count, struct fidelity *out,
-                               bp_error *error)
+bp_status fidelity_measure(const struct lattice *truth, const struct expansion *tables, uint32_t count, struct fidelity *out,
+                           bp_error *error)
 {
 	const struct lattice_dims dims = truth->dims;
 	struct fidelity_sums total[LAYERS_MAX] = {{0}};
-	struct corner_cosines *cosines = NULL;
-	uint8_t *unseen = NULL;
 	size_t unseen_count = 0;
 
 	if (count > LAYERS_MAX)
@@ -48,15 +46,15 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "fidelity: no valid cell to compare");
 	const size_t slice = (size_t)dims.theta_d * dims.phi_d, cells = lattice_cells(dims);
 	float *cosine = malloc(slice * sizeof *cosine);
-	bp_status status = cosine ? corner_cosines_create(dims, &cosines, error) : error_memory(error, slice * sizeof *cosine);
-	if (!status)
-		status = (unseen = malloc(cells)) ? lattice_seen(dims, unseen, error) : error_memory(error, cells);
+	uint8_t *unseen = malloc(cells);
+	const bp_status status = cosine && unseen ? BP_OK : error_memory(error, cells + slice * sizeof *cosine);
 	if (status)
 		goto out;
+	lattice_seen(dims, unseen);
 	for (size_t n = 0; n < cells; n++)
 		unseen_count += unseen[n] = truth->valid[n] & !unseen[n];
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
-		corner_cosines_slice(cosines, i, cosine);
+		lattice_corner_cosines(dims, i, cosine);
 		slice_add(truth, tables, count, i, unseen, cosine, total);
 	}
 	const double n = 3.0 * (double)truth->valid_count, n_seen = 3.0 * (double)(truth->valid_count - unseen_count);
@@ -70,13 +68,7 @@ bp_status fidelity_measure_all(const struct lattice *truth, const struct expansi
 		out[t].largest_relative = total[t].largest_relative < DBL_MAX ? total[t].largest_relative : DBL_MAX;
 	}
 out:
-	free(cosines);
 	free(cosine);
 	free(unseen);
 	return status;
-}
-
-bp_status fidelity_measure(const struct lattice *truth, const struct expansion *table, struct fidelity *out, bp_error *error)
-{
-	return fidelity_measure_all(truth, table, 1, out, error);
 }

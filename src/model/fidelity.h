@@ -16,18 +16,13 @@ struct fidelity {
 };
 
 /*
- * Over valid cells of `truth` and three channels; e decoded, b measured, in 1/sr. Sums in a fixed
- * order (per theta_h slice, then over slices), so the result is the same on every machine.
- * Negative or non-finite e cannot occur (expansion). BP_ERROR_ARGUMENT where the extents differ,
- * BP_ERROR_BAD_INPUT where no cell is valid.
+ * The figures of `count` tables (1 to LAYERS_MAX), over valid cells of `truth` and three channels: out[count]; e decoded, b
+ * measured, in 1/sr. Sums in a fixed order (per theta_h slice, then over slices), so the result is the same on every machine.
+ * What depends on the measured value alone is worked out once for all tables, so three take half again as long as one.
+ * Negative or non-finite e cannot occur (expansion). BP_ERROR_ARGUMENT where the extents differ, BP_ERROR_BAD_INPUT where no cell
+ * is valid.
  */
-bp_status fidelity_measure(const struct lattice *truth, const struct expansion *table, struct fidelity *out, bp_error *error);
-
-/*
- * The same figures, bit for bit, of `count` tables (1 to LAYERS_MAX): out[count]. What depends on the measured value alone
- * is worked out once for all of them, so three tables take half again as long as one.
- */
-bp_status fidelity_measure_all(const struct lattice *truth, const struct expansion *tables, uint32_t count, struct fidelity *out,
-                               bp_error *error);
+bp_status fidelity_measure(const struct lattice *truth, const struct expansion *tables, uint32_t count, struct fidelity *out,
+                           bp_error *error);
 
 #endif

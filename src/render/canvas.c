@@ -25,21 +25,19 @@ bp_status canvas_make(uint32_t width, uint32_t height, bool svg, struct canvas *
 	if (!canvas)
 		return error_memory(error, sizeof *canvas);
 	*canvas = (struct canvas){.svg = svg, .width = width, .height = height};
-	if (svg) {
-		if (!(canvas->text = memory_stream_open(&canvas->svg_bytes))) {
-			free(canvas);
-			return error_memory(error, BUFSIZ);
-		}
+	bp_status status = BP_OK;
+	if (!svg)
+		status = picture_alloc(width, height, &canvas->picture, error);
+	else if (!(canvas->text = memory_stream_open(&canvas->svg_bytes)))
+		status = error_memory(error, BUFSIZ);
+	else
 		fprintf(canvas->text,
 		        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%u\" height=\"%u\" viewBox=\"0 0 %u %u\" "
 		        "font-family=\"sans-serif\">\n" PICTURE_SVG_MARK "\n",
 		        width, height, width, height);
-	} else {
-		bp_status status = picture_alloc(width, height, &canvas->picture, error);
-		if (status != BP_OK) {
-			free(canvas);
-			return status;
-		}
+	if (status) {
+		canvas_free(canvas);
+		return status;
 	}
 	canvas_rectangle(canvas, 0, 0, width, height, (struct colour){255, 255, 255});
 	*out = canvas;

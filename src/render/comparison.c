@@ -47,39 +47,35 @@ bp_status comparison_measure(struct comparison_plans *plans, const struct lattic
                              struct comparison *out, struct picture *pictures, bp_error *error)
 {
 	struct lookup_table measured = {0}, decoded = {0};
-	struct comparison result;
-	bp_status status;
-
-	memset(&result, 0, sizeof result); /* padding too: rows travel between processes as bytes */
-	if (comparison_dims_check(truth->dims, table->dims, error))
-		return BP_ERROR_BAD_INPUT;
-	if (!truth->valid_count)
-		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the reference has no valid cell");
-	if ((status = comparison_plans_make(plans, truth->dims, error)) != BP_OK)
-		return status;
-	if ((status = fidelity_measure(truth, table, &result.fidelity, error)) != BP_OK)
-		return status;
-	metrics_worst_cell(truth, table, &result.worst);
-	if ((status = lookup_table_measured(truth, &measured, error)) != BP_OK)
-		goto out;
-	if ((status = lookup_table_decoded(table, truth->valid, measured.unit, &decoded, error)) != BP_OK)
-		goto out;
-	energy_measure(plans->energy, &measured, &result.measured);
-	energy_measure(plans->energy, &decoded, &result.decoded);
-	for (int l = 0; l < LIGHTING_COUNT; l++) {
+	const struct lookup_table *const tables[2] = {&measured, &decoded};
+	struct sphere_image *const images[2] = {&plans->reference, &plans->estimate};
+	bp_status status = comparison_dims_check(truth->dims, table->dims, error);
+	memset(out, 0, sizeof *out); /* padding too: rows travel between processes as bytes */
+	if (!status && !truth->valid_count)
+		status = error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "the reference has no valid cell");
+	if (!status)
+		status = comparison_plans_make(plans, truth->dims, error);
+	if (!status)
+		status = fidelity_measure(truth, table, 1, &out->fidelity, error);
+	if (!status)
+		status = lookup_table_measured(truth, &measured, error);
+	if (!status)
+		status = lookup_table_decoded(table, truth->valid, measured.unit, &decoded, error);
+	if (!status) {
+		metrics_worst_cell(truth, table, &out->worst);
+		energy_measure(plans->energy, &measured, &out->measured);
+		energy_measure(plans->energy, &decoded, &out->decoded);
+	}
+	for (int l = 0; !status && l < LIGHTING_COUNT; l++) {
 		if (!plans->plans[l])
 			continue;
-		const struct lookup_table *tables[2] = {&measured, &decoded};
-		struct sphere_image *images[2] = {&plans->reference, &plans->estimate};
 		sphere_plan_render(plans->plans[l], tables, 2, images);
-		if ((status = metrics_psnr(images[0], images[1], &result.psnr[l], error)) != BP_OK ||
-		    (status = itp_mean(images[0], images[1], &result.itp[l], error)) != BP_OK)
-			goto out;
-		if (pictures && (status = picture_compare(images[0], images[1], &pictures[l], error)) != BP_OK)
-			goto out;
+		status = metrics_psnr(images[0], images[1], &out->psnr[l], error);
+		if (!status)
+			status = itp_mean(images[0], images[1], &out->itp[l], error);
+		if (!status && pictures)
+			status = picture_compare(images[0], images[1], &pictures[l], error);
 	}
-	*out = result;
-out:
 	lookup_table_free(&measured);
 	lookup_table_free(&decoded);
 	return status;

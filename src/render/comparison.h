@@ -39,8 +39,8 @@ void comparison_plans_free(struct comparison_plans *plans); /* a zeroed struct i
 bp_status comparison_dims_check(struct lattice_dims measured, struct lattice_dims decoded, bp_error *error);
 
 /*
- * Fills *out. With pictures not NULL, pictures[lighting] becomes picture_compare of that lighting; the caller
- * frees them, also after an error. BP_ERROR_BAD_INPUT: the extents differ, or no cell is valid.
+ * Fills *out, which is unspecified after an error. With pictures not NULL, pictures[lighting] becomes picture_compare of that
+ * lighting; the caller frees them, also after an error. BP_ERROR_BAD_INPUT: the extents differ, or no cell is valid.
  */
 bp_status comparison_measure(struct comparison_plans *plans, const struct lattice *truth, const struct expansion *table,
                              struct comparison *out, struct picture *pictures, bp_error *error);

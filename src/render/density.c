@@ -7,57 +7,42 @@
 
 enum { ROUNDS_MAX = 500 };
 
-static bp_status source_alloc(struct lattice_dims dims, struct density_source *out, bp_error *error)
+static bp_status source_alloc(struct lattice_dims dims, const uint8_t *valid, struct density_source *out, bp_error *error)
 {
-	size_t cells = lattice_cells(dims);
-	struct density_source source = {.dims = dims, .mean = calloc(cells, sizeof(float)), .valid = malloc(cells)};
-	if (!source.mean || !source.valid) {
-		density_source_free(&source);
-		return error_memory(error, 5 * cells);
-	}
-	*out = source;
-	return BP_OK;
+	*out = (struct density_source){.dims = dims, .mean = calloc(lattice_cells(dims), sizeof(float)), .valid = valid};
+	return out->mean ? BP_OK : error_memory(error, lattice_cells(dims) * sizeof(float));
 }
 
 bp_status density_source_measured(const struct lattice *lattice, struct density_source *out, bp_error *error)
 {
-	size_t cells = lattice_cells(lattice->dims);
-	struct density_source source;
-	bp_status status = source_alloc(lattice->dims, &source, error);
-	if (status != BP_OK)
+	const size_t cells = lattice_cells(lattice->dims);
+	const bp_status status = source_alloc(lattice->dims, lattice->valid, out, error);
+	if (status)
 		return status;
 	double largest = 0;
-	for (size_t n = 0; n < cells; n++)
-		if ((source.valid[n] = lattice->valid[n]))
-			for (int c = 0; c < 3; c++)
-				largest = fmax(largest, lattice->rgb[c][n]);
+	for (int c = 0; c < 3; c++)
+		for (size_t n = 0; n < cells; n++)
+			largest = lattice->valid[n] ? fmax(largest, lattice->rgb[c][n]) : largest;
 	/* copulas do not depend on the scale: any magnitude fits a float */
 	double scale = largest > 0 ? 1 / (3 * largest) : 1;
 	for (size_t n = 0; n < cells; n++)
-		if (source.valid[n])
-			source.mean[n] = (float)(lattice->rgb[0][n] * scale + lattice->rgb[1][n] * scale + lattice->rgb[2][n] * scale);
-	*out = source;
+		if (lattice->valid[n])
+			out->mean[n] = (float)(lattice->rgb[0][n] * scale + lattice->rgb[1][n] * scale + lattice->rgb[2][n] * scale);
 	return BP_OK;
 }
 
 bp_status density_source_decoded(const struct expansion *table, const uint8_t *valid, struct density_source *out, bp_error *error)
 {
-	size_t cells = lattice_cells(table->dims);
-	struct density_source source;
-	bp_status status = source_alloc(table->dims, &source, error);
-	if (status != BP_OK)
-		return status;
-	for (size_t n = 0; n < cells; n++)
-		if ((source.valid[n] = valid ? valid[n] : 1))
-			source.mean[n] = (table->rgb[0][n] + table->rgb[1][n] + table->rgb[2][n]) / 3;
-	*out = source;
-	return BP_OK;
+	const bp_status status = source_alloc(table->dims, valid, out, error);
+	for (size_t n = 0; !status && n < lattice_cells(table->dims); n++)
+		if (valid[n])
+			out->mean[n] = (table->rgb[0][n] + table->rgb[1][n] + table->rgb[2][n]) / 3;
+	return status;
 }
 
 void density_source_free(struct density_source *source)
 {
 	free(source->mean);
-	free(source->valid);
 	*source = (struct density_source){0};
 }
 
@@ -114,33 +99,40 @@ double density_slice(const struct density_source *source, uint32_t i, float *den
 	return weight > 0 ? sqrt(squares / weight) : 0;
 }
 
-void error_profile(const struct lattice *truth, const struct expansion *table, double *error_mean)
+/* What stands for channel c of a cell, in 1/sr. */
+typedef double estimate_fn(const void *from, const struct lattice *truth, int c, size_t n);
+
+static double table_estimate(const void *from, const struct lattice *truth, int c, size_t n)
 {
-	size_t slice = (size_t)truth->dims.theta_d * truth->dims.phi_d;
+	const struct expansion *table = from;
+	(void)truth;
+	return table->unit * (double)table->rgb[c][n];
+}
+
+static double regression_estimate(const void *from, const struct lattice *truth, int c, size_t n)
+{
+	const struct colour_fit *fit = (const struct colour_fit *)from + c;
+	return fmax(0, fit->diffuse + fit->specular * ((truth->rgb[0][n] + truth->rgb[1][n] + truth->rgb[2][n]) / 3));
+}
+
+static void profile_take(const struct lattice *truth, estimate_fn *estimate, const void *from, double *error_mean)
+{
+	const size_t slice = (size_t)truth->dims.theta_d * truth->dims.phi_d;
 	for (uint32_t i = 0; i < truth->dims.theta_h; i++) {
 		double sum = 0, count = 0;
 		for (size_t n = i * slice; n < (i + 1) * slice; n++)
-			if (truth->valid[n]) {
-				for (int c = 0; c < 3; c++)
-					sum += fabs(table->unit * (double)table->rgb[c][n] - truth->rgb[c][n]);
-				count += 3;
-			}
+			for (int c = 0; c < 3 && truth->valid[n]; c++, count++)
+				sum += fabs(estimate(from, truth, c, n) - truth->rgb[c][n]);
 		error_mean[i] = count > 0 ? sum / count : NAN;
 	}
 }
 
+void error_profile(const struct lattice *truth, const struct expansion *table, double *error_mean)
+{
+	profile_take(truth, table_estimate, table, error_mean);
+}
+
 void error_profile_uncoded(const struct lattice *truth, const struct colour_fit colour[3], double *error_mean)
 {
-	size_t slice = (size_t)truth->dims.theta_d * truth->dims.phi_d;
-	for (uint32_t i = 0; i < truth->dims.theta_h; i++) {
-		double sum = 0, count = 0;
-		for (size_t n = i * slice; n < (i + 1) * slice; n++)
-			if (truth->valid[n]) {
-				double mean = (truth->rgb[0][n] + truth->rgb[1][n] + truth->rgb[2][n]) / 3;
-				for (int c = 0; c < 3; c++)
-					sum += fabs(fmax(0, colour[c].diffuse + colour[c].specular * mean) - truth->rgb[c][n]);
-				count += 3;
-			}
-		error_mean[i] = count > 0 ? sum / count : NAN;
-	}
+	profile_take(truth, regression_estimate, colour, error_mean);
 }

@@ -9,11 +9,11 @@
 /* Planes of 1/sr over a lattice, and which cells count. */
 struct density_source {
 	struct lattice_dims dims;
-	float *mean; /* mean of the three channels, per cell; 0 where invalid */
-	uint8_t *valid;
+	float *mean;          /* mean of the three channels, per cell; 0 where invalid */
+	const uint8_t *valid; /* the caller's, for as long as the source lives */
 };
 
-/* The achromatic table of a measured or decoded material; valid NULL: every cell counts. The caller frees *out. */
+/* The achromatic table of a measured or decoded material. The caller frees *out, also after a failure. */
 bp_status density_source_measured(const struct lattice *lattice, struct density_source *out, bp_error *error);
 bp_status density_source_decoded(const struct expansion *table, const uint8_t *valid, struct density_source *out,
                                  bp_error *error);

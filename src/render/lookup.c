@@ -6,17 +6,6 @@
 
 #include "error.h"
 
-static bp_status table_alloc(struct lattice_dims dims, double unit, struct lookup_table *out, bp_error *error)
-{
-	size_t bytes = (size_t)(dims.theta_d + 1) * (dims.theta_h + 1) * (dims.phi_d + 1) * 4 * sizeof(float);
-	float *cells;
-	bytes = (bytes + 63) / 64 * 64;
-	if (!(cells = aligned_alloc(64, bytes)))
-		return error_memory(error, bytes);
-	*out = (struct lookup_table){.dims = dims, .unit = unit, .cells = cells};
-	return BP_OK;
-}
-
 static size_t table_row(struct lattice_dims dims, uint32_t j, uint32_t i)
 {
 	return 4 * (size_t)(dims.phi_d + 1) * (i + (size_t)(dims.theta_h + 1) * j);
@@ -51,62 +40,46 @@ static double table_unit(const struct lattice *lattice)
 	return largest > 0 && (largest < 1e-20 || largest > 1e20) ? largest : 1;
 }
 
-bp_status lookup_table_measured(const struct lattice *lattice, struct lookup_table *out, bp_error *error)
+/* Of planes of doubles, which are divided by the unit, or of floats, which are multiplied by `scale`. */
+static bp_status table_make(struct lattice_dims dims, double *const measured[3], float *const decoded[3], double scale,
+                            const uint8_t *valid, double unit, struct lookup_table *out, bp_error *error)
 {
-	struct lattice_dims dims = lattice->dims;
-	double unit = table_unit(lattice);
-	struct lookup_table table;
-	bp_status status = table_alloc(dims, unit, &table, error);
-	if (status != BP_OK)
-		return status;
+	size_t bytes = (size_t)(dims.theta_d + 1) * (dims.theta_h + 1) * (dims.phi_d + 1) * 4 * sizeof(float);
+	bytes = (bytes + 63) / 64 * 64;
+	struct lookup_table table = {.dims = dims, .unit = unit, .cells = aligned_alloc(64, bytes)};
+	if (!table.cells)
+		return error_memory(error, bytes);
 	for (uint32_t i = 0; i < dims.theta_h; i++)
 		for (uint32_t j = 0; j < dims.theta_d; j++) {
 			size_t from = lattice_index(dims, i, j, 0);
 			float *to = table.cells + table_row(dims, j, i);
 			for (uint32_t k = 0; k < dims.phi_d; k++, from++, to += 4) {
-				bool valid = lattice->valid[from];
 				for (int c = 0; c < 3; c++)
-					to[c] = valid ? (float)(lattice->rgb[c][from] / unit) : 0;
+					to[c] = (float)(!valid[from] ? 0 : measured ? measured[c][from] / unit : (double)decoded[c][from] * scale);
 				to[3] = 0;
 			}
 		}
 	table_wrap(&table);
 	*out = table;
 	return BP_OK;
+}
+
+bp_status lookup_table_measured(const struct lattice *lattice, struct lookup_table *out, bp_error *error)
+{
+	return table_make(lattice->dims, lattice->rgb, NULL, 1, lattice->valid, table_unit(lattice), out, error);
 }
 
 bp_status lookup_table_decoded(const struct expansion *expansion, const uint8_t *valid, double unit, struct lookup_table *out,
                                bp_error *error)
 {
-	struct lattice_dims dims = expansion->dims;
 	unit = unit > 0 ? unit : expansion->unit;
-	double scale = expansion->unit / unit;
-	struct lookup_table table;
-	bp_status status = table_alloc(dims, unit, &table, error);
-	if (status != BP_OK)
-		return status;
-	for (uint32_t i = 0; i < dims.theta_h; i++)
-		for (uint32_t j = 0; j < dims.theta_d; j++) {
-			size_t from = lattice_index(dims, i, j, 0);
-			float *to = table.cells + table_row(dims, j, i);
-			for (uint32_t k = 0; k < dims.phi_d; k++, from++, to += 4) {
-				bool counts = !valid || valid[from];
-				for (int c = 0; c < 3; c++)
-					to[c] = counts ? (float)(expansion->rgb[c][from] * scale) : 0;
-				to[3] = 0;
-			}
-		}
-	table_wrap(&table);
-	*out = table;
-	return BP_OK;
+	return table_make(expansion->dims, NULL, expansion->rgb, expansion->unit / unit, valid, unit, out, error);
 }
 
 void lookup_table_free(struct lookup_table *table)
 {
-	if (table) {
-		free(table->cells);
-		*table = (struct lookup_table){0};
-	}
+	free(table->cells);
+	*table = (struct lookup_table){0};
 }
 
 enum { ANGLE_STEPS = 8192 };

@@ -32,11 +32,11 @@ bp_status lookup_table_measured(const struct lattice *lattice, struct lookup_tab
 
 /*
  * A decoded table in a given unit. Where valid[cell] is 0, cells become 0, as in the measured table it stands
- * beside; valid NULL: every cell counts. unit 0: the expansion's own.
+ * beside. unit 0: the expansion's own.
  */
 bp_status lookup_table_decoded(const struct expansion *table, const uint8_t *valid, double unit, struct lookup_table *out,
                                bp_error *error);
-void lookup_table_free(struct lookup_table *table); /* NULL and a zeroed struct are allowed */
+void lookup_table_free(struct lookup_table *table); /* a zeroed struct is allowed */
 
 /* A place: the cell whose centre is before it along each axis, fractions of the way to the next in 1/65535, and a factor. */
 struct place {

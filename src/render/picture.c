@@ -21,10 +21,8 @@ bp_status picture_alloc(uint32_t width, uint32_t height, struct picture *out, bp
 
 void picture_free(struct picture *picture)
 {
-	if (picture) {
-		free(picture->rgb);
-		*picture = (struct picture){0};
-	}
+	free(picture->rgb);
+	*picture = (struct picture){0};
 }
 
 static uint8_t to_byte(double x) { return (uint8_t)(fmin(1, fmax(0, x)) * 255 + 0.5); }
@@ -116,6 +114,7 @@ bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp
 {
 	const size_t row = 3 * (size_t)image->size;
 	double largest = 0, factor = 1, scale = image->unit;
+	struct byte_buffer file = {0};
 	char head[96];
 	for (size_t n = 0; n < row * image->size; n++)
 		largest = fmax(largest, fabs((double)image->rgb[n]));
@@ -125,21 +124,12 @@ bp_status image_write_pfm(const char *path, const struct sphere_image *image, bp
 		scale = 1;
 	}
 	/* a negative scale means little-endian; its magnitude is the unit */
-	size_t head_bytes = (size_t)snprintf(head, sizeof head, "PF\n%u %u\n%.9g\n", image->size, image->size, -scale);
-	size_t bytes = head_bytes + row * image->size * sizeof(float);
-	uint8_t *memory = malloc(bytes), *to = memory;
-	if (!memory)
-		return error_memory(error, bytes);
-	memcpy(to, head, head_bytes);
-	to += head_bytes;
+	write_bytes(&file, head, (size_t)snprintf(head, sizeof head, "PF\n%u %u\n%.9g\n", image->size, image->size, -scale));
 	for (uint32_t y = image->size; y-- > 0;)
-		for (size_t n = 0; n < row; n++, to += 4) {
-			uint32_t bits;
-			const float value = (float)(factor * (double)image->rgb[row * y + n]);
-			memcpy(&bits, &value, 4);
-			store_u32(to, bits);
-		}
-	bp_status status = output_file_write_whole(path, OUTPUT_REPLACE, memory, bytes, error);
-	free(memory);
+		for (size_t n = 0; n < row; n++)
+			write_f32(&file, (float)(factor * (double)image->rgb[row * y + n]));
+	const bp_status status = file.failed ? error_memory(error, file.count)
+	                                     : output_file_write_whole(path, OUTPUT_REPLACE, file.bytes, file.count, error);
+	byte_buffer_free(&file);
 	return status;
 }

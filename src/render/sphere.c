@@ -213,9 +213,7 @@ bp_status sphere_image_alloc(uint32_t size, struct sphere_image *out, bp_error *
 
 void sphere_image_free(struct sphere_image *image)
 {
-	if (image) {
-		free(image->rgb);
-		free(image->covered);
-		*image = (struct sphere_image){0};
-	}
+	free(image->rgb);
+	free(image->covered);
+	*image = (struct sphere_image){0};
 }

@@ -2,6 +2,7 @@
 
 #include "error.h"
 #include "output_check.h"
+#include "progress.h"
 #include "report.h"
 
 #include <errno.h>
@@ -129,8 +130,12 @@ bool folder_write(const struct folder_set *set)
 		free_names &= found >= 0;
 	}
 	count += count < set->count;
-	for (uint64_t n = 0; n < count && free_names; n++)
+	progress_start(count > 1);
+	for (uint64_t n = 0; n < count && free_names; n++) {
+		progress_show(n, count, (double)n / (double)count);
 		whole &= there[n] || name_write(set, n);
+	}
+	progress_stop();
 	free(there);
 	return free_names && whole;
 }

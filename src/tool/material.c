@@ -101,11 +101,7 @@ bp_status material_counting_cells(const struct record_head *head, uint8_t **vali
 	uint8_t *mask = malloc(cells);
 	if (!mask)
 		return error_memory(error, cells);
-	bp_status status = lattice_below_horizon(head->dims, head->horizon_limit, mask, error);
-	if (status != BP_OK) {
-		free(mask);
-		return status;
-	}
+	lattice_below_horizon(head->dims, head->horizon_limit, mask);
 	for (size_t n = 0; n < cells; n++)
 		mask[n] = !mask[n];
 	*valid = mask;

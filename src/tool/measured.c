@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "merl/sha256.h"
 #include "report.h"
 
 struct wanted {
@@ -50,7 +51,7 @@ bp_status measured_set_find(struct measured_set *set, const char *folder, bp_err
 	const bp_status status = source_scan(&folder, 1, &options, &set->sources, error);
 	free(wanted.name);
 	for (size_t s = 0; status == BP_OK && s < set->sources.stream_count; s++)
-		report_warning(set->sources.streams[s], NULL, "passed over: a compressed tar cannot be searched; unpack it");
+		report_warning(set->sources.streams[s].path, NULL, "passed over: a compressed tar cannot be searched; unpack it");
 	for (size_t n = 0; status == BP_OK && n < set->count; n++)
 		set->item[n].source = source_list_find(&set->sources, set->name[n]);
 	return status;
@@ -62,4 +63,25 @@ void measured_set_free(struct measured_set *set)
 	free(set->item);
 	free(set->name);
 	*set = (struct measured_set){0};
+}
+
+bp_status measured_read(const struct source_item *source, struct source_cursor *cursor, const struct record_head *head,
+                        struct lattice *out, bool *packed, bp_error *error)
+{
+	struct sha256 sha;
+	uint8_t digest[SHA256_BYTES];
+	const struct merl_reading reading = {.seen = packed ? sha256_add : NULL, .seen_user = &sha, .any_dims = true};
+	struct holes holes;
+	bp_error reason;
+
+	sha256_start(&sha);
+	bp_status status = source_item_read(source, cursor, &reading, out, &reason);
+	if (!status && (status = lattice_take_holes(out, head->options.zeros, &holes, &reason)))
+		lattice_free(out);
+	if (status)
+		return error_set(error, status, reason.offset, "%s: %s", source->path, reason.message);
+	sha256_finish(&sha, digest);
+	if (packed)
+		*packed = memcmp(digest, head->source.sha256, sizeof digest) == 0;
+	return BP_OK;
 }

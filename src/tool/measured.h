@@ -30,4 +30,11 @@ bp_status measured_set_find(struct measured_set *set, const char *folder, bp_err
 
 void measured_set_free(struct measured_set *set);
 
+/*
+ * Reads a measured file, of any legal extents, as `build` did when it made the record: by the same rule for holes. *packed,
+ * unless NULL, tells whether it is the very file that was packed, by its SHA-256. Messages begin with the path.
+ */
+bp_status measured_read(const struct source_item *source, struct source_cursor *cursor, const struct record_head *head,
+                        struct lattice *out, bool *packed, bp_error *error);
+
 #endif

@@ -226,7 +226,10 @@ bp_status scene_words_add(struct scene_words *words, const char *path, bp_error 
 		close(fd);
 		return error_memory(error, sizeof *file);
 	}
+	const size_t before = words->count;
 	bp_status status = quotes_scan(words, file, error);
+	for (size_t n = before; n < words->count; n++)
+		words->word[n].file = path;
 	if (!status && ferror(file))
 		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read: %s", strerror(errno));
 	fclose(file);

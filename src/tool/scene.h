@@ -15,7 +15,8 @@
 
 struct scene_word {
 	char *text;
-	bool spare; /* it also reads otherwise, as another word: where this one means nothing, nothing is missing */
+	const char *file; /* the first that has it: the caller's */
+	bool spare;       /* it also reads otherwise, as another word: where this one means nothing, nothing is missing */
 };
 /* Words of all the files that were added; zeroed to begin with. */
 struct scene_words {
@@ -23,7 +24,10 @@ struct scene_words {
 	size_t count;
 };
 
-/* Adds a regular file's words that could be a material's name or a measured file's path. Errors: BP_ERROR_IO, BP_ERROR_MEMORY. */
+/*
+ * Adds a regular file's words that could be a material's name or a measured file's path; its own path must stay where it is.
+ * Errors: BP_ERROR_IO, BP_ERROR_MEMORY.
+ */
 bp_status scene_words_add(struct scene_words *words, const char *path, bp_error *error);
 
 /* Sorts them by their bytes and removes doubles. */

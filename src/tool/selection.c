@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-void selection_missing_report(const struct selection *selection, const char *written)
+void selection_missing_report(const struct selection *selection, const char *written, const char *where)
 {
 	char name[BP_NAME_BYTES_MAX + 1];
 	struct index_page leaf = {0};
@@ -32,8 +32,8 @@ void selection_missing_report(const struct selection *selection, const char *wri
 	                        ? "'?"
 	                        : "'? It is the same text in another Unicode form "
 	                          "(letters and accents apart, or composed): copy it from `brdfpack list`";
-	snprintf(error.message, sizeof error.message, "there is no such material%s%s%s", best ? "; did you mean '" : "",
-	         best ? best : "", after);
+	snprintf(error.message, sizeof error.message, "there is no such material%s%.150s%s%s%s", where ? ", which is named in " : "",
+	         where ? where : "", best ? "; did you mean '" : "", best ? best : "", after);
 	report_error(selection->path, written, &error);
 }
 
@@ -74,7 +74,7 @@ bool selection_open(struct selection *selection, const char *path, char **names,
 		}
 		selection->incomplete = true;
 		if (status == BP_ERROR_NOT_FOUND)
-			selection_missing_report(selection, names[i]);
+			selection_missing_report(selection, names[i], NULL);
 		else
 			report_error(path, names[i], &error);
 	}

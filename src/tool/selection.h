@@ -30,8 +30,8 @@ struct selection {
 bool selection_open(struct selection *selection, const char *path, char **names, int name_count);
 /* The same from operands ARCHIVE [NAME]...; an exit code. */
 int selection_from(struct selection *selection, const struct command *command, char **operands, int operand_count);
-/* Says that the archive has no such material, and which may have been meant. */
-void selection_missing_report(const struct selection *selection, const char *written);
+/* Says that the archive has no such material, in which file it is named (or NULL), and which may have been meant. */
+void selection_missing_report(const struct selection *selection, const char *written, const char *where);
 void selection_close(struct selection *selection);
 
 /* The index entry of the n-th selected material. A walk over all reads every index page once. */

@@ -5,6 +5,7 @@
 #include "workers.h"
 
 #include "error.h"
+#include "interrupt.h"
 #include "report.h"
 #include "worker_process.h"
 
@@ -127,19 +128,19 @@ bp_status workers_start(const struct workers_options *options, struct workers **
 		pool->slot_fd[i] = memfd_create("brdfpack-member", MFD_CLOEXEC);
 		if (pool->slot_fd[i] < 0) {
 			error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot create a memory file: %s", strerror(errno));
-			workers_stop(pool);
-			return BP_ERROR_IO;
+			goto out;
 		}
 	}
 	for (unsigned i = 0; i < options->count; i++)
 		any |= worker_start(&pool->setup, &pool->worker[i]);
-	if (!any) {
-		error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot start a worker process: %s", strerror(errno));
-		workers_stop(pool);
-		return BP_ERROR_IO;
+	if (any) {
+		*out = pool;
+		return BP_OK;
 	}
-	*out = pool;
-	return BP_OK;
+	error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot start a worker process: %s", strerror(errno));
+out:
+	workers_stop(pool);
+	return BP_ERROR_IO;
 }
 
 bool workers_idle(const struct workers *pool) { return worker_find_idle((struct workers *)pool) || !workers_alive(pool); }
@@ -226,4 +227,32 @@ void workers_stop(struct workers *pool)
 		if (pool->slot_fd[i] >= 0)
 			close(pool->slot_fd[i]);
 	free(pool);
+}
+
+bp_status workers_run(const struct workers_options *options, const char *const *names, size_t count, bp_error *error)
+{
+	struct workers_options pool = *options;
+	struct workers *workers;
+	size_t wanted = 0;
+	for (size_t n = 0; n < count; n++)
+		wanted += names[n] != NULL;
+	if (wanted == 0)
+		return BP_OK;
+	if (wanted < pool.count)
+		pool.count = (unsigned)wanted;
+	bp_status status = interrupt_install(&pool.wake_fd, error);
+	if (status == BP_OK)
+		status = workers_start(&pool, &workers, error);
+	if (status != BP_OK)
+		return status;
+	for (size_t n = 0; n < count && !interrupt_signal(); n++) {
+		while (names[n] && !workers_idle(workers) && !interrupt_signal())
+			workers_wait(workers, -1);
+		if (names[n] && !interrupt_signal())
+			workers_submit(workers, &(struct job){.number = n, .name = names[n], .slot = -1});
+	}
+	while (workers_busy(workers) && !interrupt_signal())
+		workers_wait(workers, -1);
+	workers_stop(workers);
+	return BP_OK;
 }

@@ -10,21 +10,6 @@
 enum { CODEC_RAW = 0, CODEC_SPARSE_OLD = 1, CODEC_SPARSE = 2 };
 enum { LEFT_OUT_HD = 1, LEFT_OUT_HPHI = 2, LEFT_OUT_SLICES = 4, LEFT_OUT_ALL = 7 };
 
-#define CHANNEL_KINDS(c) \
-	{SECTION_MARGINALS + (c)*SECTION_CHANNEL, CODEC_RAW, 2}, {SECTION_PAIR_HD + (c)*SECTION_CHANNEL, CODEC_SPARSE, 1}, \
-		{SECTION_PAIR_HPHI + (c)*SECTION_CHANNEL, CODEC_SPARSE, 1}, \
-	{ \
-		SECTION_SLICES + (c)*SECTION_CHANNEL, CODEC_SPARSE, 1 \
-	}
-static const struct section_kind KINDS[] = {CHANNEL_KINDS(0), CHANNEL_KINDS(1), CHANNEL_KINDS(2)};
-/* Codec versions up to 3 had one achromatic density. */
-static const struct section_kind RETIRED[] = {
-	{SECTION_MARGINALS, CODEC_RAW, 1},
-	{SECTION_PAIR_HD, CODEC_SPARSE_OLD, 1},
-	{SECTION_PAIR_HPHI, CODEC_SPARSE_OLD, 1},
-	{SECTION_SLICES, CODEC_SPARSE_OLD, 1},
-};
-
 /* The sections of a channel, in the order of their types. */
 static const struct {
 	uint16_t type, codec, version, layer;
@@ -37,6 +22,20 @@ static const struct {
 	{SECTION_SLICES, CODEC_SPARSE, 1, PAPER_LAYER_SLICES, PAPER_SLICE, LEFT_OUT_SLICES},
 };
 enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
+
+static bool paper_reads(const struct record_section *entry)
+{
+	const uint32_t part = (entry->type - 1u) % SECTION_CHANNEL;
+	return entry->type >= 1 && entry->type <= 3 * SECTION_CHANNEL && entry->codec == PARTS[part].codec &&
+	       entry->version == PARTS[part].version;
+}
+
+/* Codec versions up to 3 had one achromatic density. */
+static bool paper_retired(const struct record_section *entry)
+{
+	return entry->type >= 1 && entry->type <= SECTION_CHANNEL && entry->version == 1 &&
+	       entry->codec == (entry->type == SECTION_MARGINALS ? CODEC_RAW : CODEC_SPARSE_OLD);
+}
 
 static const struct sparse_field *fields_of(const struct paper_channel *channel, enum paper_field kind, uint32_t *count)
 {
@@ -114,45 +113,36 @@ static uint32_t bracket_next(const struct bracket *b, uint64_t budget)
 	return next > b->above && next < b->below ? next : (b->above + b->below) / 2;
 }
 
-static bp_status paper_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
-                              uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
+bp_status paper_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
+                       uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
 	const uint64_t budget = request->record_bytes_max;
 	struct bracket bracket = {.above = 0, .below = SHIFT_MOST};
-	uint32_t last = 0;
 	(void)decoded;
 
-	bp_status status = model_write(model->paper, 0, sections, layer_count, left_out, error);
-	bracket.above_bytes = record_bytes(sections, *layer_count, request->name_bytes);
-	if (status || bracket.above_bytes <= budget)
-		return status;
-	section_list_free(sections);
-	status = model_write(model->paper, SHIFT_MOST * SHIFT_GRAIN, sections, layer_count, left_out, error);
-	bracket.below_bytes = record_bytes(sections, *layer_count, request->name_bytes);
-	if (!status && bracket.below_bytes > budget)
-		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-		                 "the budget of %u bytes is too small: this record takes at least %llu", request->record_bytes_max,
-		                 (unsigned long long)bracket.below_bytes);
-	last = SHIFT_MOST;
-	while (!status && bracket.below - bracket.above > 1) {
+	for (uint32_t shift = 0, next;; shift = next) { /* the finest, the coarsest, and what lies between */
 		section_list_free(sections);
-		last = bracket_next(&bracket, budget);
-		status = model_write(model->paper, last * SHIFT_GRAIN, sections, layer_count, left_out, error);
+		const bp_status status = model_write(model->paper, shift * SHIFT_GRAIN, sections, layer_count, left_out, error);
+		if (status)
+			return status;
 		const uint64_t bytes = record_bytes(sections, *layer_count, request->name_bytes);
-		if (bytes <= budget) {
-			bracket.below = last;
-			bracket.below_bytes = bytes;
-			if (bytes >= budget - budget / 500)
-				return status; /* what is left would not buy another grain worth its time */
-		} else {
-			bracket.above = last;
+		if (bytes > budget && shift == SHIFT_MOST)
+			return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+			                 "the budget of %u bytes is too small: this record takes at least %llu", request->record_bytes_max,
+			                 (unsigned long long)bytes);
+		if (bytes > budget) {
+			bracket.above = shift;
 			bracket.above_bytes = bytes;
+		} else {
+			bracket.below = shift;
+			bracket.below_bytes = bytes;
+			if (shift == 0 || (shift < SHIFT_MOST && bytes >= budget - budget / 500))
+				return BP_OK; /* what is left would not buy another grain worth its time */
 		}
+		next = shift == 0 ? SHIFT_MOST : bracket.below - bracket.above > 1 ? bracket_next(&bracket, budget) : bracket.below;
+		if (next == shift)
+			return BP_OK;
 	}
-	if (status || last == bracket.below)
-		return status;
-	section_list_free(sections);
-	return model_write(model->paper, bracket.below * SHIFT_GRAIN, sections, layer_count, left_out, error);
 }
 
 /* ---- decoding ---- */
@@ -202,14 +192,4 @@ static bp_status paper_decode(const struct record_head *head, const struct secti
 	return BP_OK;
 }
 
-const struct profile_codec PAPER_CODEC = {
-	.profile = PROFILE_PAPER,
-	.version = 4,
-	.kinds = KINDS,
-	.kind_count = sizeof KINDS / sizeof *KINDS,
-	.retired = RETIRED,
-	.retired_count = sizeof RETIRED / sizeof *RETIRED,
-	.decode = paper_decode,
-};
-
-const struct profile_encoder PAPER_ENCODER = {.profile = PROFILE_PAPER, .encode = paper_encode};
+const struct profile_codec PAPER_CODEC = {.version = 4, .reads = paper_reads, .retired = paper_retired, .decode = paper_decode};

@@ -9,6 +9,9 @@
 enum { FORESEEABLE = 2000 };             /* bytes of the higher planes below which too little is known to foresee the rest */
 static const double RATE_ROUNDING = 0.3; /* what rate.h was measured with; thinned levels are about as many */
 
+/* Where the step is below so many times the noise, a finer one tells of the noise alone: bytes may be this share further off. */
+static const double NOISE_STEPS = 1.5, NOISE_SLACK = 0.02;
+
 /* How near the bytes of all units must come to the budget, as ratios, and what is aimed at; how often a step may be tried. */
 struct search {
 	double low, high, aim;
@@ -27,7 +30,8 @@ static struct search search_for(int effort)
 
 /* One try with a step. Bytes are those of the record but for its head. */
 struct attempt {
-	const struct search *search; /* NULL: code all units, whatever they take */
+	double low, high; /* ratios of `wanted` to `room` that will do */
+	bool last;        /* code all units, whatever they take */
 	const struct rate *rate;
 	double bias;               /* what was wanted for each byte foreseen in the last attempt that was complete */
 	double room;               /* bytes */
@@ -48,11 +52,11 @@ void encoding_clear(struct encoding *e)
 /* Before the lowest plane, half of the work, is begun: will the bytes be what the search asks for? */
 static bool worth_going_on(const struct encoding *e, struct attempt *a)
 {
-	if (!a->search || a->taken[2] <= FORESEEABLE)
+	if (a->last || a->taken[2] <= FORESEEABLE)
 		return true;
 	a->foreseen = rate_foresee(a->rate, (double)e->step, RATE_ROUNDING, a->taken);
 	a->wanted = a->foreseen * a->bias;
-	return a->wanted >= a->search->low * a->room && a->wanted <= a->search->high * a->room;
+	return a->wanted >= a->low * a->room && a->wanted <= a->high * a->room;
 }
 
 /* Units from *unit on until layer l is full; `bytes` of the record come before it. False: given up, or ended by the watch. */
@@ -151,13 +155,16 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 		/* A record whose last unit left a gap is filled by a slightly finer step; the gaps of small records are wide. */
 		const double finer = n > 0 && a.complete && fitting == e->step ? 1 + 0.004 * n : 1;
 		e->step = (float)rate_step(&rate, finer * bits, RATE_ROUNDING, (double)least);
-		a.search = n + 1 < search.attempts ? &search : NULL;
+		const double slack = (double)e->step < NOISE_STEPS * (double)e->model->noise ? NOISE_SLACK : 0;
+		a.low = search.low - slack;
+		a.high = search.high + slack;
+		a.last = n + 1 == search.attempts;
 		bp_status status = encode_once(e, &a, error);
 		if (status)
 			return status;
 		const double ratio = a.wanted / room;
-		const bool full = (double)e->bytes >= 0.991 * (double)limit;
-		if (a.complete && ((full && ratio >= search.low && ratio <= search.high) || (ratio < 1 && e->step <= least)))
+		const bool full = (double)e->bytes >= fmin(0.991, a.low) * (double)limit;
+		if (a.complete && ((full && ratio >= a.low && ratio <= a.high) || (ratio < 1 && e->step <= least)))
 			return BP_OK;
 		if (a.complete && a.foreseen > 0)
 			a.bias = a.wanted / a.foreseen;
@@ -171,7 +178,7 @@ bp_status encoding_make(struct encoding *e, int effort, bp_error *error)
 	}
 	/* Not met: a record that is cut off early is better than one that is not full. */
 	if (fitting > 0 && e->step != fitting) {
-		a.search = NULL;
+		a.last = true;
 		e->step = fitting;
 		return encode_once(e, &a, error);
 	}

@@ -5,7 +5,62 @@
 
 #include "error.h"
 #include "memory.h"
-#include "planes_contexts.h"
+
+/* ---- bands ---- */
+
+static void band_add(struct bands *bands, uint32_t orientation, uint32_t row, uint32_t column, uint32_t rows, uint32_t columns,
+                     int coarsest)
+{
+	struct band *b = &bands->band[bands->count];
+	*b = (struct band){.row = row, .column = column, .rows = rows, .columns = columns, .orientation = orientation};
+	b->parent = orientation == 0 ? -1 : coarsest ? 0 : (int32_t)bands->count - 3;
+	b->parent_shift = !coarsest;
+	b->block_rows = (rows + BLOCK_EDGE - 1) / BLOCK_EDGE;
+	b->block_columns = (columns + BLOCK_EDGE - 1) / BLOCK_EDGE;
+	b->block_stride = b->block_columns + 2;
+	b->block_at = bands->blocks + b->block_stride + 1;
+	bands->blocks += (b->block_rows + 2) * b->block_stride;
+	bands->count++;
+}
+
+void bands_lay_out(uint32_t theta_h, uint32_t theta_d, struct bands *out)
+{
+	const uint32_t levels = spectrum_levels(theta_h, theta_d);
+	*out = (struct bands){0};
+	band_add(out, 0, 0, 0, (theta_h + (1u << levels) - 1) >> levels, (theta_d + (1u << levels) - 1) >> levels, 1);
+	for (uint32_t l = levels; l > 0; l--) {
+		const uint32_t rows = (theta_h + (1u << (l - 1)) - 1) >> (l - 1), columns = (theta_d + (1u << (l - 1)) - 1) >> (l - 1);
+		const uint32_t r = (rows + 1) / 2, c = (columns + 1) / 2;
+		band_add(out, 1, 0, c, r, columns - c, l == levels);
+		band_add(out, 2, r, 0, rows - r, c, l == levels);
+		band_add(out, 3, r, c, rows - r, columns - c, l == levels);
+	}
+}
+
+/* ---- contexts ---- */
+
+/* With nothing around it that is known to differ from 0, a cell, row, block or band starts at 1/50, as if of six bits. */
+enum { QUIET_START = 83886 << 10 | 6 };
+
+static void contexts_reset(struct plane_contexts *c)
+{
+	static const uint16_t least[SIZES] = {0, 1, 2, 3, 4, 7, 11, 16, 26, 41, 64, 102, 162, 256, 407, 646};
+	mixer_context *mixed = (mixer_context *)&c->mixed, *quiet = (mixer_context *)&c->quiet;
+
+	for (size_t i = 0; i < sizeof c->mixed / sizeof *mixed; i++)
+		mixed[i] = MIXER_CONTEXT_EVEN;
+	for (size_t i = 0; i < sizeof c->quiet / sizeof *quiet; i++)
+		quiet[i] = QUIET_START;
+	for (int set = 0; set < 2; set++)
+		for (int i = 0; i < MIXER_INPUTS; i++)
+			c->sign_weights[set].w[i] = MIXER_WEIGHT_START;
+	for (uint32_t v = 0, size = 0; v < SIZE_TABLE; v++) {
+		size += size + 1 < SIZES && v >= least[size + 1];
+		c->size[v] = (uint8_t)size;
+	}
+}
+
+/* ---- planes ---- */
 
 /*
  * Blocks that a decoder's pool begins with: enough for a preview, and small enough to stay with the process from material to
@@ -33,8 +88,7 @@ bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **o
 	p->levels = encoder ? memory_alloc(slots * sizeof *p->levels) : NULL;
 	p->cells = encoder ? memory_alloc((size_t)dims.theta_h * dims.theta_d * sizeof *p->cells) : NULL;
 	p->costs = encoder ? memory_alloc((size_t)dims.theta_h * dims.theta_d * sizeof *p->costs) : NULL;
-	p->contexts = malloc(sizeof *p->contexts);
-	if (!at || !p->pool || (encoder && !(p->levels && p->cells && p->costs)) || !p->contexts) {
+	if (!at || !p->pool || (encoder && !(p->levels && p->cells && p->costs))) {
 		planes_free(p);
 		return error_memory(error, slots * sizeof *p->pool);
 	}
@@ -53,7 +107,7 @@ bp_status planes_create(struct lattice_dims dims, int encoder, struct planes **o
 		p->active[f] = at;
 	for (int f = 0; f < 3 && encoder; f++, at += blocks)
 		p->top[f] = at;
-	plane_contexts_reset(p->contexts);
+	contexts_reset(&p->contexts);
 	*out = p;
 	return BP_OK;
 }
@@ -84,7 +138,6 @@ void planes_free(struct planes *p)
 	free(p->cells);
 	free(p->costs);
 	free(p->candidates);
-	free(p->contexts);
 	free(p);
 }
 
@@ -98,5 +151,5 @@ void planes_start(struct planes *p, uint32_t count)
 	}
 	p->pool_count = 1;
 	p->planes = count;
-	plane_contexts_reset(p->contexts);
+	contexts_reset(&p->contexts);
 }

@@ -9,10 +9,54 @@
 
 #include "model/spectral/spectral.h"
 #include "codec/bit_mixer.h"
-#include "bands.h"
 #include "trellis.h"
 
-enum { BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
+enum { BANDS_MAX = 3 * SPECTRUM_LEVELS_MAX + 1, BLOCK_EDGE = 8, BLOCK_CELLS = BLOCK_EDGE * BLOCK_EDGE };
+
+/*
+ * The plane of H x D wavelet coefficients of a harmonic falls into bands (FORMAT.md, "Bands"), the coarse one first, and a band
+ * into blocks of 8 x 8 (fewer at its end). Blocks have numbers; around each band's is one block of padding, so that neighbours
+ * need no test.
+ */
+struct band {
+	uint32_t row, column, rows, columns; /* in the plane of coefficients */
+	uint32_t orientation;                /* bit 0: detail along theta_d, bit 1: along theta_h */
+	int32_t parent;        /* the band of the same orientation one level coarser, band 0 at the coarsest level, -1 for band 0 */
+	uint32_t parent_shift; /* 1: a parent's cell stands for 2 x 2; 0 at the coarsest level */
+	uint32_t block_rows, block_columns, block_at, block_stride;
+};
+
+struct bands {
+	uint32_t count;
+	uint32_t blocks; /* of a plane, padding included */
+	struct band band[BANDS_MAX];
+};
+
+void bands_lay_out(uint32_t theta_h, uint32_t theta_d, struct bands *out);
+
+/*
+ * What the coder has learnt so far (FORMAT.md, "Bit planes", has the meaning of indices).
+ *
+ * Most bits have a pair of contexts, signs a mix of four, and a quiet bit, one with nothing around it that is known to differ
+ * from 0, a single one.
+ */
+enum { HARMONIC_CLASSES = 8, SIZES = 16, SIZE_TABLE = 647 };
+struct plane_contexts {
+	struct mixed_contexts {
+		mixer_context band[2][120];
+		mixer_context block[2][BANDS_MAX * 54];
+		mixer_context zero[2][64 * SIZES * SIZES]; /* the second uses 81 * 81 */
+		mixer_context refine[2][6 * BANDS_MAX * SIZES];
+		mixer_context first[BLOCK_EDGE]; /* of a row with nothing around it: is it this one? by how many may follow */
+		mixer_context sign[MIXER_INPUTS][81 * 4];
+	} mixed;
+	struct quiet_contexts {
+		mixer_context band[HARMONIC_CLASSES * 2], block[HARMONIC_CLASSES * BANDS_MAX * 2];
+		mixer_context row[HARMONIC_CLASSES * BANDS_MAX * 12], cell[HARMONIC_CLASSES * BANDS_MAX * 12];
+	} quiet;
+	struct mixer_weights sign_weights[2];
+	uint8_t size[SIZE_TABLE]; /* size(v); what is larger has the last one's */
+};
 
 /*
  * What is known of the levels of one block, row by row; 0 behind the band's end. What stands for a neighbour's contexts comes
@@ -66,7 +110,7 @@ struct planes {
 	struct candidate *candidates;
 	uint32_t candidate_count;
 	float candidate_least;
-	struct plane_contexts *contexts;
+	struct plane_contexts contexts;
 	void *block; /* the one allocation behind the arrays but for the pools */
 };
 

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "planes.h"
-#include "planes_contexts.h"
 
 #define INLINE inline __attribute__((always_inline))
 

@@ -98,23 +98,18 @@ static uint32_t harmonic_list(struct planes *p, uint32_t f, size_t block0, const
 {
 	const ptrdiff_t next = (ptrdiff_t)p->bands.blocks;
 	uint32_t count = 0;
-	for (uint32_t b = 0; b < p->bands.count; b++) {
-		const struct band *band = &p->bands.band[b];
-		for (uint32_t y = 0; y < band->block_rows; y++)
-			for (uint32_t x = 0; x < band->block_columns; x++) {
-				const size_t at = block0 + band->block_at + (size_t)y * band->block_stride + x;
-				const uint32_t *slot = p->level_slot[f] + at;
-				if (!*slot)
-					continue;
-				const struct surroundings s = {
-					p->levels[slot[-2 * next]].near,
-					p->levels[slot[-next]].near,
-					p->levels[slot[next]].near,
-					p->levels[slot[2 * next]].near,
-					{p->levels[p->level_slot[f == 0][at]].near, p->levels[p->level_slot[f == 2 ? 1 : 2][at]].near},
-				};
-				count += block_list(&p->levels[*slot], *slot, &s, class_of, p->cells + count);
-			}
+	for (size_t at = block0; at < block0 + p->bands.blocks; at++) { /* padding holds nothing */
+		const uint32_t *slot = p->level_slot[f] + at;
+		if (!*slot)
+			continue;
+		const struct surroundings s = {
+			p->levels[slot[-2 * next]].near,
+			p->levels[slot[-next]].near,
+			p->levels[slot[next]].near,
+			p->levels[slot[2 * next]].near,
+			{p->levels[p->level_slot[f == 0][at]].near, p->levels[p->level_slot[f == 2 ? 1 : 2][at]].near},
+		};
+		count += block_list(&p->levels[*slot], *slot, &s, class_of, p->cells + count);
 	}
 	return count;
 }
@@ -123,15 +118,14 @@ static void harmonic_tops(struct planes *p, uint32_t f, size_t block0)
 {
 	for (uint32_t b = 0; b < p->bands.count; b++) {
 		const struct band *band = &p->bands.band[b];
-		uint8_t *own = &p->top[f][block0 + band->block_at - band->block_stride - 1];
-		*own = 0;
-		for (uint32_t y = 0; y < band->block_rows; y++)
-			for (uint32_t x = 0; x < band->block_columns; x++) {
-				const size_t at = block0 + band->block_at + (size_t)y * band->block_stride + x;
-				const uint32_t slot = p->level_slot[f][at];
-				p->top[f][at] = slot ? block_top(&p->levels[slot]) : 0;
-				*own = *own < p->top[f][at] ? p->top[f][at] : *own;
-			}
+		const size_t first = block0 + band->block_at - band->block_stride - 1;
+		uint8_t *top = p->top[f] + first; /* padding: of the band */
+		top[0] = 0;
+		for (uint32_t n = 1; n < (band->block_rows + 2) * band->block_stride; n++) {
+			const uint32_t slot = p->level_slot[f][first + n];
+			top[n] = slot ? block_top(&p->levels[slot]) : 0;
+			top[0] = top[0] < top[n] ? top[n] : top[0];
+		}
 	}
 }
 

@@ -298,7 +298,7 @@ static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32
 	const size_t block0 = (size_t)(harmonic + 2) * p->bands.blocks;
 	const struct place u = {
 		.planes = p,
-		.contexts = p->contexts,
+		.contexts = &p->contexts,
 		.coder = coder,
 		.plane = plane,
 		.field = field,

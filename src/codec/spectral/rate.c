@@ -71,7 +71,7 @@ double rate_step(const struct rate *rate, double bits, double rounding, double l
 double rate_each(double bytes, bool noisy)
 {
 	const double octaves = fast_log2(bytes / 60000);
-	return fast_exp2(noisy ? 0.374 + 0.026 * octaves : 0.155 - 0.018 * octaves);
+	return fast_exp2(noisy ? 0.314 + 0.022 * octaves : 0.155 - 0.018 * octaves);
 }
 
 double rate_foresee(const struct rate *rate, double step, double rounding, const double taken[RATE_PLANES])

@@ -21,15 +21,13 @@ enum {
 	PLANES_VERSION = 2
 };
 
-static const struct section_kind KINDS[] = {
-	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION},
-	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_CUT},
-	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_GRADED},
-	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION + FIELDS_DEPENDENT},
-	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_CUT + FIELDS_DEPENDENT},
-	{SECTION_FIELDS, CODEC_FIELDS, FIELDS_VERSION_GRADED + FIELDS_DEPENDENT},
-	{SECTION_PLANES, CODEC_PLANES, PLANES_VERSION},
-};
+static bool spectral_reads(const struct record_section *entry)
+{
+	if (entry->type == SECTION_FIELDS)
+		return entry->codec == CODEC_FIELDS && entry->version >= FIELDS_VERSION &&
+		       entry->version <= FIELDS_VERSION_GRADED + FIELDS_DEPENDENT;
+	return entry->type == SECTION_PLANES && entry->codec == CODEC_PLANES && entry->version == PLANES_VERSION;
+}
 
 /* Records up to these many bytes are previews of larger ones. */
 static const uint32_t PREVIEWS[] = {4096, 16384, 65536, 262144, 1048576};
@@ -89,12 +87,10 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	*copy = *model;
 	copy->layer_count = e->layers;
 	copy->spectral = decoded;
-	decoded->dims = e->model->dims;
-	decoded->unit = e->model->unit;
-	decoded->limit = e->model->limit;
-	memcpy(decoded->base, e->model->base, sizeof decoded->base);
-	memcpy(decoded->rotation, e->model->rotation, sizeof decoded->rotation);
-	decoded->weights = e->model->weights;
+	*decoded = *e->model;
+	for (int f = 0; f < 3; f++)
+		decoded->coefficient[f] = NULL;
+	decoded->noise = 0;
 	decoded->step = e->step;
 	decoded->dependent = true;
 	memcpy(decoded->centre, e->centre, sizeof e->centre);
@@ -105,8 +101,8 @@ static bp_status decoded_build(const struct encoding *e, const struct model *mod
 	return planes_collect(e->planes, e->end[e->layers - 1], &decoded->levels, &decoded->level_count, error);
 }
 
-static bp_status spectral_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
-                                 uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
+bp_status spectral_encode(const struct model *model, const struct encode_request *request, struct section_list *sections,
+                          uint32_t *layer_count, uint32_t *left_out, struct model **decoded, bp_error *error)
 {
 	struct encoding e = {.model = model->spectral, .watch = request->options->watch};
 	const uint32_t budget = request->record_bytes_max;
@@ -257,12 +253,4 @@ static bp_status spectral_decode(const struct record_head *head, const struct se
 	return status;
 }
 
-const struct profile_codec SPECTRAL_CODEC = {
-	.profile = PROFILE_SPECTRAL,
-	.version = 7,
-	.kinds = KINDS,
-	.kind_count = sizeof KINDS / sizeof *KINDS,
-	.decode = spectral_decode,
-};
-
-const struct profile_encoder SPECTRAL_ENCODER = {.profile = PROFILE_SPECTRAL, .encode = spectral_encode};
+const struct profile_codec SPECTRAL_CODEC = {.version = 7, .reads = spectral_reads, .decode = spectral_decode};

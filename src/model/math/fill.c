@@ -8,53 +8,34 @@
 enum { LEVELS_MAX = 24, SWEEPS = 4 };
 
 struct fill {
-	unsigned levels; /* level 0 is the caller's plane */
-	struct fill_level level[LEVELS_MAX];
-	float *values; /* of levels 1.., one after the other */
-	uint8_t *valid;
-	float *row; /* two rows of scratch, a cell longer on both sides */
+	struct fill_level level[LEVELS_MAX]; /* level 0 is the caller's plane; each halves the one before, down to a single cell */
+	float *row;                          /* two rows of scratch, a cell longer on both sides */
+	float values[]; /* of levels 1.., one after the other; behind them the rows, and which values are valid */
 };
 
 bp_status fill_create(uint32_t rows, uint32_t columns, struct fill **out, bp_error *error)
 {
-	struct fill *fill = calloc(1, sizeof *fill);
-	size_t cells = 0;
+	const size_t scratch = 2 * ((size_t)columns + 2);
+	size_t cells = 0, at = 0;
 
+	for (uint32_t r = rows, c = columns; r > 1 || c > 1; cells += (size_t)r * c) {
+		r = (r + 1) / 2;
+		c = (c + 1) / 2;
+	}
+	const size_t bytes = sizeof(struct fill) + (cells + scratch) * sizeof(float) + cells;
+	struct fill *fill = malloc(bytes);
 	if (!fill)
-		return error_memory(error, sizeof *fill);
-	for (uint32_t r = rows, c = columns;; r = (r + 1) / 2, c = (c + 1) / 2) {
-		fill->level[fill->levels].rows = r;
-		fill->level[fill->levels].columns = c;
-		cells += fill->levels ? (size_t)r * c : 0;
-		fill->levels++;
-		if (r == 1 && c == 1)
-			break;
-	}
-	fill->values = malloc((cells + 1) * sizeof *fill->values);
-	fill->valid = malloc(cells + 1);
-	fill->row = malloc(2 * ((size_t)columns + 2) * sizeof *fill->row);
-	if (!fill->values || !fill->valid || !fill->row) {
-		fill_free(fill);
-		return error_memory(error, cells * 5);
-	}
-	size_t at = 0;
-	for (unsigned l = 1; l < fill->levels; l++) {
-		fill->level[l].value = fill->values + at;
-		fill->level[l].valid = fill->valid + at;
+		return error_memory(error, bytes);
+	fill->row = fill->values + cells;
+	uint8_t *const valid = (uint8_t *)(fill->row + scratch);
+	fill->level[0] = (struct fill_level){.rows = rows, .columns = columns};
+	for (unsigned l = 1; at < cells; l++) {
+		const struct fill_level *below = &fill->level[l - 1];
+		fill->level[l] = (struct fill_level){(below->rows + 1) / 2, (below->columns + 1) / 2, fill->values + at, valid + at};
 		at += (size_t)fill->level[l].rows * fill->level[l].columns;
 	}
 	*out = fill;
 	return BP_OK;
-}
-
-void fill_free(struct fill *fill)
-{
-	if (!fill)
-		return;
-	free(fill->values);
-	free(fill->valid);
-	free(fill->row);
-	free(fill);
 }
 
 void fill_plane(struct fill *fill, float *plane, const uint8_t *valid, float when_empty)

@@ -18,9 +18,8 @@
 
 struct fill; /* the pyramid's memory, for planes of one size; use it from one thread at a time */
 
-/* 1 x 1 or more. */
+/* 1 x 1 or more; *out is freed with free(). */
 bp_status fill_create(uint32_t rows, uint32_t columns, struct fill **out, bp_error *error);
-void fill_free(struct fill *fill); /* NULL is allowed */
 
 /* Fills the cells of plane[rows * columns] (row-major) where !valid. Without any valid cell, all become `when_empty`. */
 void fill_plane(struct fill *fill, float *plane, const uint8_t *valid, float when_empty);

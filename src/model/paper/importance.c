@@ -11,19 +11,9 @@
 struct importance {
 	struct lattice_dims dims;
 	struct importance_place *place; /* theta_h x theta_d */
-	double *chance;                 /* running sums of area over the places */
 	float *cos_phi;                 /* at the cells' centres */
+	double chance[];                /* running sums of area over the places; behind them the arrays above */
 };
-
-void importance_free(struct importance *importance)
-{
-	if (!importance)
-		return;
-	free(importance->place);
-	free(importance->chance);
-	free(importance->cos_phi);
-	free(importance);
-}
 
 static void places_fill(struct importance *m)
 {
@@ -56,19 +46,16 @@ static void places_fill(struct importance *m)
 
 bp_status importance_create(struct lattice_dims dims, struct importance **out, bp_error *error)
 {
-	struct importance *m = calloc(1, sizeof *m);
 	const size_t places = (size_t)dims.theta_h * dims.theta_d;
+	const size_t bytes =
+		sizeof(struct importance) + places * (sizeof(double) + sizeof(struct importance_place)) + dims.phi_d * sizeof(float);
+	struct importance *m = malloc(bytes);
 
 	if (!m)
-		return error_memory(error, sizeof *m);
+		return error_memory(error, bytes);
 	m->dims = dims;
-	m->place = malloc(places * sizeof *m->place);
-	m->chance = malloc(places * sizeof *m->chance);
-	m->cos_phi = malloc(dims.phi_d * sizeof *m->cos_phi);
-	if (!m->place || !m->chance || !m->cos_phi) {
-		importance_free(m);
-		return error_memory(error, places * sizeof *m->place);
-	}
+	m->place = (struct importance_place *)(m->chance + places);
+	m->cos_phi = (float *)(m->place + places);
 	places_fill(m);
 	*out = m;
 	return BP_OK;

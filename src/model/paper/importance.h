@@ -19,9 +19,8 @@
 
 struct importance;
 
-/* For lattices of this size; freed with importance_free. */
+/* For lattices of this size; freed with free(). */
 bp_status importance_create(struct lattice_dims dims, struct importance **out, bp_error *error);
-void importance_free(struct importance *importance); /* NULL is allowed */
 
 /*
  * The unit, in 1/sr: the brightness of the tenth-brightest of a hundred pixels under 29 lights of which five are strong, drawn

@@ -14,27 +14,16 @@ enum { ROUNDS = 8, TURNS = 3 }; /* of h and d by turns; of these and phi */
 
 bp_status marginals_alloc(struct lattice_dims d, struct marginals *out, bp_error *error)
 {
-	const size_t pairs = (size_t)d.theta_h * d.theta_d;
+	const size_t pairs = (size_t)d.theta_h * d.theta_d, bytes = (paper_marginal_values(d) + 2 * pairs) * sizeof(float);
 
-	*out = (struct marginals){.h = malloc(d.theta_h * sizeof(float)),
-	                          .d = malloc(d.theta_d * sizeof(float)),
-	                          .phi = malloc(d.phi_d * sizeof(float)),
-	                          .rest = malloc(pairs * sizeof(float)),
-	                          .measured = malloc(pairs * sizeof(float))};
-	if (out->h && out->d && out->phi && out->rest && out->measured)
-		return BP_OK;
-	marginals_free(out);
-	return error_memory(error, 2 * pairs * sizeof(float));
-}
-
-void marginals_free(struct marginals *m)
-{
-	free(m->h);
-	free(m->d);
-	free(m->phi);
-	free(m->rest);
-	free(m->measured);
-	*m = (struct marginals){.h = NULL};
+	out->h = malloc(bytes);
+	if (!out->h)
+		return error_memory(error, bytes);
+	out->d = out->h + d.theta_h;
+	out->phi = out->d + d.theta_d;
+	out->rest = out->phi + d.phi_d;
+	out->measured = out->rest + pairs;
+	return BP_OK;
 }
 
 /* Sums of the logarithms and of their weights: of every pair (theta_h, theta_d) and of every phi_d. */
@@ -69,27 +58,18 @@ static void sums_gather(struct lattice_dims d, const float *value, const float *
 /* What the others leave for one index, or the value before it where nothing was measured. */
 static double mean_or(double sum, double weight, double otherwise) { return weight > 0 ? sum / weight : otherwise; }
 
-static void pairs_fit_sums(struct lattice_dims d, const struct log_sums *sums, double *h, double *j_mean)
+/* One factor, of n values `step` pairs apart, from what m values of the other leave, `across` pairs apart. */
+static void axis_fit(const struct log_sums *sums, uint32_t n, uint32_t step, uint32_t m, uint32_t across, const double *other,
+                     double range, double *out)
 {
-	for (int round = 0; round < ROUNDS; round++) {
-		for (uint32_t i = 0; i < d.theta_h; i++) {
-			double sum = 0, weight = 0;
-			for (uint32_t j = 0; j < d.theta_d; j++) {
-				const double w = sums->pair_weight[i * d.theta_d + j];
-				sum += sums->pair[i * d.theta_d + j] - w * j_mean[j];
-				weight += w;
-			}
-			h[i] = mean_or(sum, weight, i ? h[i - 1] : 0);
+	for (uint32_t a = 0; a < n; a++) {
+		double sum = 0, weight = 0;
+		for (uint32_t b = 0; b < m; b++) {
+			const double w = sums->pair_weight[a * step + b * across];
+			sum += sums->pair[a * step + b * across] - w * other[b];
+			weight += w;
 		}
-		for (uint32_t j = 0; j < d.theta_d; j++) {
-			double sum = 0, weight = 0;
-			for (uint32_t i = 0; i < d.theta_h; i++) {
-				const double w = sums->pair_weight[i * d.theta_d + j];
-				sum += sums->pair[i * d.theta_d + j] - w * h[i];
-				weight += w;
-			}
-			j_mean[j] = clamped(mean_or(sum, weight, j ? j_mean[j - 1] : 0), RANGE);
-		}
+		out[a] = clamped(mean_or(sum, weight, a ? out[a - 1] : 0), range);
 	}
 }
 
@@ -147,7 +127,10 @@ bp_status marginals_fit(struct lattice_dims d, const float *value, const float *
 	sums.phi_weight = sums.phi + d.phi_d;
 	sums_gather(d, value, shown, &sums);
 	for (int turn = 0; turn < TURNS; turn++) {
-		pairs_fit_sums(d, &sums, h, j_mean);
+		for (int round = 0; round < ROUNDS; round++) {
+			axis_fit(&sums, d.theta_h, d.theta_d, d.theta_d, 1, j_mean, INFINITY, h);
+			axis_fit(&sums, d.theta_d, 1, d.theta_h, d.theta_d, h, RANGE, j_mean);
+		}
 		phi_fit(d, shown, &sums, h, j_mean, phi);
 		for (uint32_t k = 0; k < d.phi_d; k++) {
 			change[k] = phi[k] - before[k];

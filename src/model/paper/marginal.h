@@ -13,13 +13,12 @@
 #include "importance.h"
 
 struct marginals {
-	float *h, *d, *phi; /* > 0; h is 0 where a whole slice is */
+	float *h, *d, *phi; /* > 0; h is 0 where a whole slice is. One block, with what follows: h is freed with free() */
 	float *rest;        /* theta_h x theta_d: 2^(the mean over phi_d less h and d), within a factor of 20 of 1 */
 	float *measured;    /* theta_h x theta_d: the sum of the weights */
 };
 
 bp_status marginals_alloc(struct lattice_dims dims, struct marginals *out, bp_error *error);
-void marginals_free(struct marginals *marginals);
 /* value[cells] of importance_weigh; shown[cells]: 0 where invalid. */
 bp_status marginals_fit(struct lattice_dims dims, const float *value, const float *shown, struct marginals *out, bp_error *error);
 

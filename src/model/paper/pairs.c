@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "error.h"
-#include "field.h"
 #include "model/math/fast_math.h"
 #include "paper_kernels.h"
 
@@ -15,44 +14,60 @@ static const double RIDGE = 1e-3;
 static const float SHARED_MAX = 30; /* of a value that should be near 1 */
 static const float FINE = 0.0625f;  /* step of the levels, beside the least coefficient that is worth keeping */
 
+/* c_hd with A, or c_hphi with B. */
+struct pair {
+	enum paper_field kind;
+	uint32_t columns; /* theta_d or phi_d */
+	struct sparse_fit *fit;
+	float *product, *weight; /* theta_h x columns: A or B, and the sums of weight (the rest of the product)^2 */
+	float *value;            /* likewise: the copula as it decodes */
+	float *x;                /* its coefficients, from turn to turn */
+	struct sparse_field *out;
+};
+
 struct turns {
 	struct channel_fit *channel;
 	uint32_t from;
-	float *a, *b;               /* theta_h x theta_d, theta_h x phi_d: A and B */
-	float *a_weight, *b_weight; /* sums of weight (the rest of the product)^2 */
-	float *wanted, *energy, *x[2], *numerator;
+	struct pair hd, hphi;
+	float *wanted, *energy, *numerator;
 	uint8_t *kept;
 };
 
 static void turns_free(struct turns *t)
 {
-	free(t->a);
-	free(t->x[0]);
+	free(t->hd.product);
 	free(t->kept);
 }
 
-static bp_status turns_alloc(struct channel_fit *channel, const struct sparse_fit fit[2], struct turns *t, bp_error *error)
+static bp_status turns_alloc(struct channel_fit *channel, struct sparse_fit fit[2], struct sparse_field *hd,
+                             struct sparse_field *hphi, struct turns *t, bp_error *error)
 {
 	const struct lattice_dims d = channel->dims;
-	const size_t hd = (size_t)d.theta_h * d.theta_d, hp = (size_t)d.theta_h * d.phi_d;
+	const size_t hd_cells = (size_t)d.theta_h * d.theta_d, hphi_cells = (size_t)d.theta_h * d.phi_d;
 	const size_t most = fit[0].coefficients > fit[1].coefficients ? fit[0].coefficients : fit[1].coefficients;
-	const size_t slice = (size_t)d.theta_d * d.phi_d, floats = 2 * hd + 2 * hp + hd + hp + slice;
+	const size_t slice = (size_t)d.theta_d * d.phi_d, coefficients = fit[0].coefficients + fit[1].coefficients + most;
+	const size_t floats = 3 * (hd_cells + hphi_cells) + slice + coefficients;
+	float *block = calloc(floats, sizeof *block);
 
-	*t = (struct turns){.channel = channel, .from = paper_shared_from(d.theta_h)};
-	t->a = calloc(floats, sizeof *t->a);
-	t->x[0] = calloc(fit[0].coefficients + fit[1].coefficients + most, sizeof *t->energy);
-	t->kept = malloc(most);
-	if (!t->a || !t->x[0] || !t->kept) {
+	*t = (struct turns){
+		.channel = channel,
+		.from = paper_shared_from(d.theta_h),
+		.hd = {PAPER_HD, d.theta_d, &fit[0], block, NULL, channel->hd, NULL, hd},
+		.hphi = {PAPER_HPHI, d.phi_d, &fit[1], NULL, NULL, channel->hphi, NULL, hphi},
+		.kept = malloc(most),
+	};
+	if (!block || !t->kept) {
 		turns_free(t);
-		return error_memory(error, floats * sizeof *t->a);
+		return error_memory(error, floats * sizeof *block);
 	}
-	t->a_weight = t->a + hd;
-	t->b = t->a_weight + hd;
-	t->b_weight = t->b + hp;
-	t->wanted = t->b_weight + hp;
-	t->numerator = t->wanted + hd + hp;
-	t->x[1] = t->x[0] + fit[0].coefficients;
-	t->energy = t->x[1] + fit[1].coefficients;
+	t->hd.weight = block + hd_cells;
+	t->hphi.product = t->hd.weight + hd_cells;
+	t->hphi.weight = t->hphi.product + hphi_cells;
+	t->wanted = t->hphi.weight + hphi_cells;
+	t->numerator = t->wanted + hd_cells + hphi_cells;
+	t->hd.x = t->numerator + slice;
+	t->hphi.x = t->hd.x + fit[0].coefficients;
+	t->energy = t->hphi.x + fit[1].coefficients;
 	return BP_OK;
 }
 
@@ -67,10 +82,10 @@ static void a_update(struct turns *t)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = lattice_index(d, i, j, 0), to = (size_t)i * d.theta_d + j;
 			double sums[2];
-			paper_kernels_get()->fit_row(c->weight + at, c->value + at, t->b + (size_t)i * d.phi_d,
+			paper_kernels_get()->fit_row(c->weight + at, c->value + at, t->hphi.product + (size_t)i * d.phi_d,
 			                             c->shared + (size_t)j * d.phi_d, d.phi_d, sums);
-			t->a[to] = sums[1] > 0 ? (float)(sums[0] / sums[1]) : 0;
-			t->a_weight[to] = (float)sums[1];
+			t->hd.product[to] = sums[1] > 0 ? (float)(sums[0] / sums[1]) : 0;
+			t->hd.weight[to] = (float)sums[1];
 		}
 }
 
@@ -80,12 +95,12 @@ static void b_update(struct turns *t)
 	const struct lattice_dims d = c->dims;
 
 	for (uint32_t i = t->from; i < d.theta_h; i++) {
-		float *numerator = t->b + (size_t)i * d.phi_d, *denominator = t->b_weight + (size_t)i * d.phi_d;
+		float *numerator = t->hphi.product + (size_t)i * d.phi_d, *denominator = t->hphi.weight + (size_t)i * d.phi_d;
 		memset(numerator, 0, d.phi_d * sizeof *numerator);
 		memset(denominator, 0, d.phi_d * sizeof *denominator);
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = lattice_index(d, i, j, 0);
-			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->a[(size_t)i * d.theta_d + j],
+			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->hd.product[(size_t)i * d.theta_d + j],
 			                                 c->shared + (size_t)j * d.phi_d, d.phi_d, numerator, denominator);
 		}
 		for (uint32_t k = 0; k < d.phi_d; k++)
@@ -106,8 +121,9 @@ static void shared_update(struct turns *t)
 	for (uint32_t i = t->from; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const size_t at = lattice_index(d, i, j, 0), to = (size_t)j * d.phi_d;
-			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->a[(size_t)i * d.theta_d + j],
-			                                 t->b + (size_t)i * d.phi_d, d.phi_d, t->numerator + to, c->shared_weight + to);
+			paper_kernels_get()->fit_columns(c->weight + at, c->value + at, t->hd.product[(size_t)i * d.theta_d + j],
+			                                 t->hphi.product + (size_t)i * d.phi_d, d.phi_d, t->numerator + to,
+			                                 c->shared_weight + to);
 		}
 	for (size_t k = 0; k < n; k++)
 		mean += (double)c->shared_weight[k] / (double)n;
@@ -131,8 +147,8 @@ static void marginals_settle(struct turns *t)
 	for (uint32_t i = t->from; i < d.theta_h; i++) {
 		double sum = 0, weight = 0;
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			const float a = t->a[(size_t)i * d.theta_d + j];
-			const double w = (double)t->a_weight[(size_t)i * d.theta_d + j] * (double)a * (double)a;
+			const float a = t->hd.product[(size_t)i * d.theta_d + j];
+			const double w = (double)t->hd.weight[(size_t)i * d.theta_d + j] * (double)a * (double)a;
 			if (a > 0) {
 				sum += w * fast_log2((double)(a / c->marginal.d[j]));
 				weight += w;
@@ -151,8 +167,8 @@ static void marginals_settle(struct turns *t)
 		level *= mean;
 		if (axis == 2 && mean > 0) { /* B loses this factor, so A has it */
 			for (size_t at = (size_t)t->from * d.theta_d; at < (size_t)d.theta_h * d.theta_d; at++) {
-				t->a[at] *= (float)mean;
-				t->a_weight[at] /= (float)(mean * mean);
+				t->hd.product[at] *= (float)mean;
+				t->hd.weight[at] /= (float)(mean * mean);
 			}
 		}
 	}
@@ -161,99 +177,79 @@ static void marginals_settle(struct turns *t)
 
 /* ---- coding ---- */
 
-/* c_hd = A/(K f_h f_d) from 40 degrees on, what is left of the geometric means below; t->a_weight becomes its weights. */
-static void hd_wanted(struct turns *t)
+/* What a copula is multiplied by to give A or B. */
+static float marginals_at(const struct channel_fit *c, enum paper_field kind, uint32_t row, uint32_t column)
+{
+	return kind == PAPER_HD ? c->level * c->marginal.h[row] * c->marginal.d[column] : c->marginal.phi[column];
+}
+
+/*
+ * The copula from 40 degrees on, and p->weight as its weights. Below, c_hd is what is left of the geometric means, and c_hphi
+ * is 1.
+ */
+static void pair_wanted(struct turns *t, struct pair *p)
 {
 	const struct channel_fit *c = t->channel;
-	const struct lattice_dims d = c->dims;
+	const uint32_t rows = c->dims.theta_h;
 	double mean = 0;
 
-	for (uint32_t i = t->from; i < d.theta_h; i++)
-		for (uint32_t j = 0; j < d.theta_d; j++) {
-			const size_t at = (size_t)i * d.theta_d + j;
-			const float f = c->level * c->marginal.h[i] * c->marginal.d[j], y = f > 0 && t->a_weight[at] > 0 ? t->a[at] / f : 1;
+	for (uint32_t i = t->from; i < rows; i++)
+		for (uint32_t n = 0; n < p->columns; n++) {
+			const size_t at = (size_t)i * p->columns + n;
+			const float f = marginals_at(c, p->kind, i, n), y = f > 0 && p->weight[at] > 0 ? p->product[at] / f : 1;
 			t->wanted[at] = y < FIELD_PAIR_MIN ? FIELD_PAIR_MIN : y < FIELD_VALUE_MAX ? y : FIELD_VALUE_MAX;
-			t->a_weight[at] *= f * f;
-			mean += (double)t->a_weight[at];
+			p->weight[at] *= f * f;
+			mean += (double)p->weight[at];
 		}
-	mean /= (double)(d.theta_h - t->from) * d.theta_d;
-	const float own = OWN_WEIGHT * (mean > 0 ? (float)mean : 1) * 3 / (float)d.phi_d;
-	for (size_t at = 0; at < (size_t)t->from * d.theta_d; at++) {
-		t->wanted[at] = c->marginal.rest[at];
-		t->a_weight[at] = own * c->marginal.measured[at];
+	mean /= (double)(rows - t->from) * p->columns;
+	const float usual = mean > 0 ? (float)mean : 1;
+	const float own = p->kind == PAPER_HD ? OWN_WEIGHT * usual * 3 / (float)c->dims.phi_d : OWN_WEIGHT_PHI * usual;
+	for (size_t at = 0; at < (size_t)t->from * p->columns; at++) {
+		t->wanted[at] = p->kind == PAPER_HD ? c->marginal.rest[at] : 1;
+		p->weight[at] = p->kind == PAPER_HD ? own * c->marginal.measured[at] : own;
 	}
 }
 
-static void hphi_wanted(struct turns *t)
+/* Codes t->wanted by its coefficients; p->value becomes what they decode to. In the last turn *p->out gets them. */
+static bp_status wanted_code(struct turns *t, struct pair *p, bool first, bool last, bp_error *error)
 {
-	const struct channel_fit *c = t->channel;
-	const struct lattice_dims d = c->dims;
-	double mean = 0;
-
-	for (uint32_t i = t->from; i < d.theta_h; i++)
-		for (uint32_t k = 0; k < d.phi_d; k++) {
-			const size_t at = (size_t)i * d.phi_d + k;
-			const float f = c->marginal.phi[k], y = t->b[at] / f;
-			t->wanted[at] = y < FIELD_PAIR_MIN ? FIELD_PAIR_MIN : y < FIELD_VALUE_MAX ? y : FIELD_VALUE_MAX;
-			t->b_weight[at] *= f * f;
-			mean += (double)t->b_weight[at];
-		}
-	mean /= (double)(d.theta_h - t->from) * d.phi_d;
-	for (size_t at = 0; at < (size_t)t->from * d.phi_d; at++) {
-		t->wanted[at] = 1;
-		t->b_weight[at] = OWN_WEIGHT_PHI * (mean > 0 ? (float)mean : 1);
-	}
-}
-
-/* Codes t->wanted by its coefficients; `value` becomes what they decode to. In the last turn *out gets them. */
-static bp_status pair_code(struct turns *t, struct sparse_fit *fit, enum paper_field kind, const float *weight, bool first,
-                           bool last, float *value, struct sparse_field *out, bp_error *error)
-{
-	const struct lattice_dims d = t->channel->dims;
-	float *x = t->x[kind];
+	struct sparse_target target = {t->wanted, p->weight, t->energy, 0};
 	struct field_codec *codec = NULL;
 
-	if (sparse_fit_is_one(fit, t->wanted, weight)) {
-		for (size_t i = 0; i < fit->cells; i++)
-			value[i] = 1;
-		*out = (struct sparse_field){.count = 0};
+	if (sparse_fit_is_one(p->fit, &target)) {
+		for (size_t i = 0; i < p->fit->cells; i++)
+			p->value[i] = 1;
+		*p->out = (struct sparse_field){.count = 0};
 		return BP_OK;
 	}
-	const float least = sparse_fit_energies(fit, weight, t->energy);
-	const float edge = sparse_fit_rounds(fit, t->wanted, weight, t->energy, least, paper_keep(d, kind), first ? ROUNDS_FIRST : 1,
-	                                     STEPS, t->kept, x);
+	sparse_fit_energies(p->fit, &target);
+	const uint32_t keep = paper_keep(t->channel->dims, p->kind);
+	const float edge = sparse_fit_rounds(p->fit, &target, keep, first ? ROUNDS_FIRST : 1, STEPS, t->kept, p->x);
 	if (!last) {
-		wavelet_inverse(&fit->plane, x, value, fit->scratch);
-		for (size_t i = 0; i < fit->cells; i++)
-			value[i] = value[i] > FIELD_PAIR_MIN ? value[i] : FIELD_PAIR_MIN;
+		wavelet_inverse(&p->fit->plane, p->x, p->value, p->fit->scratch);
+		for (size_t i = 0; i < p->fit->cells; i++)
+			p->value[i] = p->value[i] > FIELD_PAIR_MIN ? p->value[i] : FIELD_PAIR_MIN;
 		return BP_OK;
 	}
-	bp_status status = sparse_fit_quantise(fit, t->wanted, weight, t->energy, least, FINE * sqrtf(edge), x, out, error);
-	status = status ? status : field_codec_create(d, kind, &codec, error);
+	bp_status status = sparse_fit_quantise(p->fit, &target, FINE * sqrtf(edge), p->x, p->out, error);
+	status = status ? status : field_codec_create(t->channel->dims, p->kind, &codec, error);
 	if (!status)
-		field_expand(codec, out, value);
-	field_codec_free(codec);
+		field_expand(codec, p->out, p->value);
+	free(codec);
 	return status;
 }
 
-static void a_from_hd(struct turns *t)
+/* The copula that comes nearest to A or B, and A or B by it. */
+static bp_status pair_code(struct turns *t, struct pair *p, bool first, bool last, bp_error *error)
 {
-	const struct channel_fit *c = t->channel;
-	const struct lattice_dims d = c->dims;
-
-	for (uint32_t i = t->from; i < d.theta_h; i++)
-		for (uint32_t j = 0; j < d.theta_d; j++)
-			t->a[(size_t)i * d.theta_d + j] = c->level * c->marginal.h[i] * c->marginal.d[j] * c->hd[(size_t)i * d.theta_d + j];
-}
-
-static void b_from_hphi(struct turns *t)
-{
-	const struct channel_fit *c = t->channel;
-	const struct lattice_dims d = c->dims;
-
-	for (uint32_t i = t->from; i < d.theta_h; i++)
-		for (uint32_t k = 0; k < d.phi_d; k++)
-			t->b[(size_t)i * d.phi_d + k] = c->marginal.phi[k] * c->hphi[(size_t)i * d.phi_d + k];
+	pair_wanted(t, p);
+	const bp_status status = wanted_code(t, p, first, last, error);
+	for (uint32_t i = t->from; i < t->channel->dims.theta_h && !status; i++)
+		for (uint32_t n = 0; n < p->columns; n++) {
+			const size_t at = (size_t)i * p->columns + n;
+			p->product[at] = marginals_at(t->channel, p->kind, i, n) * p->value[at];
+		}
+	return status;
 }
 
 bp_status pairs_fit(struct channel_fit *c, struct sparse_fit fit[2], struct sparse_field *hd, struct sparse_field *hphi,
@@ -261,12 +257,12 @@ bp_status pairs_fit(struct channel_fit *c, struct sparse_fit fit[2], struct spar
 {
 	const struct lattice_dims d = c->dims;
 	struct turns t;
-	bp_status status = turns_alloc(c, fit, &t, error);
+	bp_status status = turns_alloc(c, fit, hd, hphi, &t, error);
 
 	if (status)
 		return status;
 	for (uint32_t i = t.from; i < d.theta_h; i++)
-		memcpy(t.b + (size_t)i * d.phi_d, c->marginal.phi, d.phi_d * sizeof *t.b);
+		memcpy(t.hphi.product + (size_t)i * d.phi_d, c->marginal.phi, d.phi_d * sizeof(float));
 	for (size_t n = 0; n < (size_t)d.theta_d * d.phi_d; n++)
 		c->shared[n] = 1;
 	a_update(&t);
@@ -280,15 +276,11 @@ bp_status pairs_fit(struct channel_fit *c, struct sparse_fit fit[2], struct spar
 		const bool last = turn == CODED_TURNS - 1;
 		if (turn)
 			a_update(&t);
-		hd_wanted(&t);
-		status = pair_code(&t, &fit[0], PAPER_HD, t.a_weight, !turn, last, c->hd, hd, error);
+		status = pair_code(&t, &t.hd, !turn, last, error);
 		if (status)
 			break;
-		a_from_hd(&t);
 		b_update(&t);
-		hphi_wanted(&t);
-		status = pair_code(&t, &fit[1], PAPER_HPHI, t.b_weight, !turn, last, c->hphi, hphi, error);
-		b_from_hphi(&t);
+		status = pair_code(&t, &t.hphi, !turn, last, error);
 		shared_update(&t);
 	}
 	turns_free(&t);

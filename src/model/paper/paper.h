@@ -13,6 +13,7 @@
 
 #include "model/fit.h"
 #include "model/robust/robust.h"
+#include "wavelet.h"
 
 /*
  * Layers: what a prefix of the record holds. Layer 0: the marginals and the colours, every pair taken as
@@ -35,8 +36,9 @@ enum paper_field { PAPER_HD, PAPER_HPHI, PAPER_SLICE };
 /* The theta_h cell from which on all slices share one: the first i with (i/H)^2 90 >= 40 degrees; 60 of 90. */
 uint32_t paper_shared_from(uint32_t theta_h);
 
-/* Rows and columns of a field, and coefficients of its plane. */
+/* Rows and columns of a field, its plane, and coefficients of that. */
 void paper_field_extents(struct lattice_dims dims, enum paper_field field, uint32_t *rows, uint32_t *columns);
+struct wavelet_plane paper_plane(struct lattice_dims dims, enum paper_field field);
 uint32_t paper_plane_cells(struct lattice_dims dims, enum paper_field field);
 
 /* How fine each coefficient of a field's plane is: its levels along rows and columns, 0 coarse, added. band[paper_plane_cells] */
@@ -52,8 +54,8 @@ uint16_t paper_code(float marginal); /* the nearest; of a positive number never 
 float paper_coded(uint16_t code);
 
 struct paper_channel {
-	double scale;                 /* K, 1/sr: scale f_h f_d f_phi is the model when all pairs are independent */
-	float *marginal[3];           /* theta_h, theta_d, phi_d; >= 0, about 1 in the mean, values of paper_coded */
+	double scale;       /* K, 1/sr: scale f_h f_d f_phi is the model when all pairs are independent */
+	float *marginal[3]; /* theta_h, theta_d, phi_d, one behind the other: >= 0, about 1 in the mean, values of paper_coded */
 	struct sparse_field hd, hphi; /* theta_h x theta_d and theta_h x phi_d: Haar */
 	uint32_t slice_count;         /* paper_shared_from + 1: theta_h cells below it one each, the last shared by all above */
 	struct sparse_field *slice;   /* c_dphi|h, theta_d x phi_d: Daubechies */
@@ -71,8 +73,22 @@ struct paper_model {
 bp_status paper_fit(const struct lattice *lattice, const struct watch *watch, struct paper_model **out,
                     struct colour_fit colour[3], bp_error *error);
 void paper_free(struct paper_model *paper); /* NULL is allowed */
+/* The three marginals' values; and room for them in a channel that paper_free frees. */
+static inline size_t paper_marginal_values(struct lattice_dims dims) { return (size_t)dims.theta_h + dims.theta_d + dims.phi_d; }
+bp_status paper_marginals_alloc(struct lattice_dims dims, struct paper_channel *channel, bp_error *error);
+/* Room for `count` coefficients, 1 or more; sparse_field_free also after a failure. */
+bp_status sparse_field_alloc(uint32_t count, struct sparse_field *field, bp_error *error);
 void sparse_field_free(struct sparse_field *field);
 void sparse_fields_free(struct sparse_field *fields, uint32_t count); /* the array too; NULL is allowed */
+
+/* A field's values stay within these. A pair copula is nowhere 0, so that no cell of a slice is lost to it; a slice may be. */
+#define FIELD_VALUE_MAX 1e6f
+#define FIELD_PAIR_MIN 0.03125f
+
+struct field_codec; /* memory for fields of one kind; use it from one thread at a time; freed with free() */
+bp_status field_codec_create(struct lattice_dims dims, enum paper_field kind, struct field_codec **out, bp_error *error);
+/* The field's values, row-major, within their limits; all 1 when count is 0. Indices beyond the plane are ignored. */
+void field_expand(struct field_codec *codec, const struct sparse_field *field, float *value);
 
 /* f_h f_d f_phi c_hd c_hphi c_dphi|h of a channel over the whole lattice: the model in units of its scale; >= 0 and finite. */
 bp_status paper_channel_expand(struct lattice_dims dims, const struct paper_channel *channel, float *table, bp_error *error);

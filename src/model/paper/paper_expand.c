@@ -4,16 +4,65 @@
 #include <string.h>
 
 #include "error.h"
-#include "field.h"
 #include "paper.h"
 #include "paper_kernels.h"
+
+/* ---- fields ---- */
+
+struct field_codec {
+	struct wavelet_plane plane;
+	size_t cells; /* of the plane */
+	float least;
+	float *scratch; /* behind the coefficients */
+	float coefficient[];
+};
+
+bp_status field_codec_create(struct lattice_dims dims, enum paper_field kind, struct field_codec **out, bp_error *error)
+{
+	const struct wavelet_plane plane = paper_plane(dims, kind);
+	const size_t cells = wavelet_cells(&plane), bytes = sizeof(struct field_codec) + 4 * cells * sizeof(float);
+	struct field_codec *codec = malloc(bytes);
+
+	if (!codec)
+		return error_memory(error, bytes);
+	codec->plane = plane;
+	codec->cells = cells;
+	codec->least = kind == PAPER_SLICE ? 0 : FIELD_PAIR_MIN;
+	codec->scratch = codec->coefficient + cells;
+	*out = codec;
+	return BP_OK;
+}
+
+void field_expand(struct field_codec *codec, const struct sparse_field *field, float *value)
+{
+	const size_t n = wavelet_field_cells(&codec->plane);
+	const float least = codec->least;
+
+	if (!field->count) {
+		for (size_t i = 0; i < n; i++)
+			value[i] = 1;
+		return;
+	}
+	const float step = paper_step(field->step);
+	memset(codec->coefficient, 0, codec->cells * sizeof *codec->coefficient);
+	for (uint32_t i = 0; i < field->count; i++)
+		if (field->index[i] < codec->cells)
+			codec->coefficient[field->index[i]] = (float)field->level[i] * step;
+	wavelet_inverse(&codec->plane, codec->coefficient, value, codec->scratch);
+	for (size_t i = 0; i < n; i++) {
+		const float v = value[i] > least ? value[i] : least;
+		value[i] = v < FIELD_VALUE_MAX ? v : FIELD_VALUE_MAX;
+	}
+}
+
+/* ---- slices ---- */
 
 /* Everything that a slice needs, expanded once. */
 struct slices {
 	struct lattice_dims dims;
 	const struct paper_channel *channel;
 	bool with_slices;
-	float *hd, *hphi;          /* c_hd, c_hphi; all 1 where not loaded */
+	float *hd, *hphi;          /* c_hd, c_hphi; all 1 where not loaded. hd owns all arrays */
 	struct field_codec *codec; /* of c_dphi|h */
 	float *dphi;               /* the slice's c_dphi|h */
 	bool dphi_is_one;
@@ -29,42 +78,38 @@ static const float FACTOR_MAX = 1e15f;
 static void slices_free(struct slices *s)
 {
 	free(s->hd);
-	free(s->hphi);
-	free(s->dphi);
-	free(s->column);
-	field_codec_free(s->codec);
+	free(s->codec);
 }
 
 static bp_status pair_expand(struct lattice_dims dims, enum paper_field kind, const struct sparse_field *field, bool loaded,
-                             float **out, bp_error *error)
+                             float *out, bp_error *error)
 {
 	const struct sparse_field one = {.count = 0};
 	struct field_codec *codec = NULL;
-	uint32_t rows, columns;
-
-	paper_field_extents(dims, kind, &rows, &columns);
-	*out = malloc((size_t)rows * columns * sizeof **out);
-	if (!*out)
-		return error_memory(error, (size_t)rows * columns * sizeof **out);
-	bp_status status = field_codec_create(dims, kind, &codec, error);
+	const bp_status status = field_codec_create(dims, kind, &codec, error);
 	if (!status)
-		field_expand(codec, loaded ? field : &one, *out);
-	field_codec_free(codec);
+		field_expand(codec, loaded ? field : &one, out);
+	free(codec);
 	return status;
 }
 
 static bp_status slices_begin(struct lattice_dims d, const struct paper_channel *channel, uint32_t layers, struct slices *s,
                               bp_error *error)
 {
+	const size_t hd = (size_t)d.theta_h * d.theta_d, hphi = (size_t)d.theta_h * d.phi_d, slice = (size_t)d.theta_d * d.phi_d;
+	const size_t bytes = (hd + hphi + slice + d.phi_d) * sizeof(float);
+	const bool pairs = layers > PAPER_LAYER_PAIRS;
+
 	*s = (struct slices){.dims = d, .channel = channel, .with_slices = layers > PAPER_LAYER_SLICES && channel->slice_count};
-	bp_status status = pair_expand(d, PAPER_HD, &channel->hd, layers > PAPER_LAYER_PAIRS, &s->hd, error);
-	status = status ? status : pair_expand(d, PAPER_HPHI, &channel->hphi, layers > PAPER_LAYER_PAIRS, &s->hphi, error);
-	status = status ? status : field_codec_create(d, PAPER_SLICE, &s->codec, error);
-	if (status)
-		return status;
-	s->dphi = malloc((size_t)d.theta_d * d.phi_d * sizeof *s->dphi);
-	s->column = malloc(d.phi_d * sizeof *s->column);
-	return s->dphi && s->column ? BP_OK : error_memory(error, (size_t)d.theta_d * d.phi_d * sizeof *s->dphi);
+	s->hd = malloc(bytes);
+	if (!s->hd)
+		return error_memory(error, bytes);
+	s->hphi = s->hd + hd;
+	s->dphi = s->hphi + hphi;
+	s->column = s->dphi + slice;
+	bp_status status = pair_expand(d, PAPER_HD, &channel->hd, pairs, s->hd, error);
+	status = status ? status : pair_expand(d, PAPER_HPHI, &channel->hphi, pairs, s->hphi, error);
+	return status ? status : field_codec_create(d, PAPER_SLICE, &s->codec, error);
 }
 
 /* Slice i of f_h f_d f_phi c_hd c_hphi c_dphi|h; slices must be asked for in ascending order from 0. */

@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "error.h"
-#include "paper_plane.h"
 #include "slices.h"
 #include "stage.h"
 #include "watch.h"
@@ -25,18 +24,17 @@ struct workshop {
 	struct importance *importance;
 	double unit; /* of value, 1/sr */
 	struct sparse_fit pairs[2], slices;
-	float *value, *weight, *shown; /* [cells]; value becomes the decoded model */
+	float *value, *weight, *shown; /* [cells]; value, which owns all, becomes the decoded model */
 	float *fields;                 /* of a channel_fit */
 };
 
 static void workshop_free(struct workshop *w)
 {
-	importance_free(w->importance);
+	free(w->importance);
 	sparse_fit_free(&w->pairs[0]);
 	sparse_fit_free(&w->pairs[1]);
 	sparse_fit_free(&w->slices);
 	free(w->value);
-	free(w->fields);
 }
 
 static bp_status workshop_open(const struct lattice *lattice, struct workshop *w, bp_error *error)
@@ -56,28 +54,14 @@ static bp_status workshop_open(const struct lattice *lattice, struct workshop *w
 	status = status ? status : sparse_fit_create(&plane[PAPER_SLICE], &w->slices, error);
 	if (status)
 		return status;
-	w->value = malloc(3 * cells * sizeof *w->value);
-	w->fields = malloc(fields * sizeof *w->fields);
-	if (!w->value || !w->fields)
+	w->value = malloc((3 * cells + fields) * sizeof *w->value);
+	if (!w->value)
 		return error_memory(error, (3 * cells + fields) * sizeof(float));
 	w->weight = w->value + cells;
 	w->shown = w->weight + cells;
+	w->fields = w->shown + cells;
 	w->unit = importance_unit(w->importance, lattice);
 	importance_shown(w->importance, lattice, w->shown);
-	return BP_OK;
-}
-
-static bp_status marginals_keep(const struct channel_fit *fit, struct paper_channel *out, bp_error *error)
-{
-	const uint32_t extents[3] = {fit->dims.theta_h, fit->dims.theta_d, fit->dims.phi_d};
-	const float *const from[3] = {fit->marginal.h, fit->marginal.d, fit->marginal.phi};
-
-	for (int axis = 0; axis < 3; axis++) {
-		out->marginal[axis] = malloc(extents[axis] * sizeof(float));
-		if (!out->marginal[axis])
-			return error_memory(error, extents[axis] * sizeof(float));
-		memcpy(out->marginal[axis], from[axis], extents[axis] * sizeof(float));
-	}
 	return BP_OK;
 }
 
@@ -96,15 +80,16 @@ static bp_status channel_fit(struct workshop *w, const struct lattice *lattice, 
 	stage_enter(STAGE_TRANSFORM);
 	status = status ? status : marginals_fit(d, w->value, w->shown, &fit.marginal, error);
 	status = status ? status : pairs_fit(&fit, w->pairs, &out->hd, &out->hphi, error);
-	status = status ? status : marginals_keep(&fit, out, error);
+	status = status ? status : paper_marginals_alloc(d, out, error);
 	if (!status) {
+		memcpy(out->marginal[0], fit.marginal.h, paper_marginal_values(d) * sizeof(float));
 		out->slice_count = paper_shared_from(d.theta_h) + 1;
 		out->scale = (double)fit.level * w->unit;
 		out->slice = calloc(out->slice_count, sizeof *out->slice);
 		status = out->slice ? slices_fit(&fit, &w->slices, out->slice, error)
 		                    : error_memory(error, out->slice_count * sizeof *out->slice);
 	}
-	marginals_free(&fit.marginal);
+	free(fit.marginal.h);
 	return status;
 }
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "error.h"
-#include "field.h"
 #include "paper_kernels.h"
 
 enum { STEPS = 6 };
@@ -15,34 +14,35 @@ static const float MISSING_WEIGHT = 0.001f; /* of a cell that was not: it is dra
 static const float FINE = 0.0625f;
 
 struct slices {
-	uint32_t count;
-	size_t cells, coefficients;
-	float *wanted, *weight;   /* [count][cells] */
-	float *x, *energy, *gain; /* [count][coefficients] */
-	float *least;             /* [count], of the preconditioner */
-	uint8_t *kept;            /* [coefficients] */
+	struct sparse_target *target; /* [count] */
+	float *fields;                /* of the targets */
+	float *x, *gain;              /* [count][coefficients] */
+	uint8_t *kept;                /* likewise */
 };
 
 static void slices_free(struct slices *s)
 {
-	free(s->wanted);
+	free(s->target);
+	free(s->fields);
 	free(s->x);
-	free(s->least);
 	free(s->kept);
 }
 
 static bp_status slices_alloc(uint32_t count, const struct sparse_fit *fit, struct slices *s, bp_error *error)
 {
-	*s = (struct slices){.count = count, .cells = fit->cells, .coefficients = fit->coefficients};
-	s->wanted = malloc(2 * count * s->cells * sizeof *s->wanted);
-	s->x = calloc(3 * count * s->coefficients, sizeof *s->x);
-	s->least = malloc(count * sizeof *s->least);
-	s->kept = malloc(s->coefficients);
-	if (!s->wanted || !s->x || !s->least || !s->kept)
-		return error_memory(error, 3 * count * s->coefficients * sizeof *s->x);
-	s->weight = s->wanted + count * s->cells;
-	s->energy = s->x + count * s->coefficients;
-	s->gain = s->energy + count * s->coefficients;
+	const size_t each = 2 * fit->cells + fit->coefficients, coefficients = count * fit->coefficients;
+
+	s->target = malloc(count * sizeof *s->target);
+	s->fields = malloc(count * each * sizeof *s->fields);
+	s->x = calloc(2 * coefficients, sizeof *s->x);
+	s->kept = malloc(coefficients);
+	if (!s->target || !s->fields || !s->x || !s->kept)
+		return error_memory(error, (count * each + 2 * coefficients) * sizeof *s->x);
+	s->gain = s->x + coefficients;
+	for (uint32_t i = 0; i < count; i++) {
+		float *wanted = s->fields + i * each;
+		s->target[i] = (struct sparse_target){wanted, wanted + fit->cells, wanted + 2 * fit->cells, 0};
+	}
 	return BP_OK;
 }
 
@@ -96,36 +96,26 @@ static void slice_wanted(const struct channel_fit *c, uint32_t i, float *wanted,
 bp_status slices_fit(const struct channel_fit *c, struct sparse_fit *fit, struct sparse_field *slice, bp_error *error)
 {
 	const uint32_t count = paper_shared_from(c->dims.theta_h) + 1, keep = paper_keep(c->dims, PAPER_SLICE);
-	struct gain_counts *counts = calloc(1, sizeof *counts);
-	struct slices s = {.count = 0};
-	bp_status status = counts ? slices_alloc(count, fit, &s, error) : error_memory(error, sizeof *counts);
+	const size_t n = fit->coefficients;
+	struct slices s = {.x = NULL};
+	bp_status status = slices_alloc(count, fit, &s, error);
 
 	for (uint32_t i = count; !status && i-- > 0;) {
-		float *x = s.x + i * s.coefficients, *wanted = s.wanted + i * s.cells, *weight = s.weight + i * s.cells,
-			  *energy = s.energy + i * s.coefficients;
-		slice_wanted(c, i, wanted, weight);
+		float *x = s.x + i * n;
+		slice_wanted(c, i, s.target[i].wanted, s.target[i].weight);
 		if (i + 1 < count)
-			memcpy(x, x + s.coefficients, s.coefficients * sizeof *x);
-		s.least[i] = sparse_fit_energies(fit, weight, energy);
-		sparse_fit_rounds(fit, wanted, weight, energy, s.least[i], keep / count, i + 1 < count ? 1 : 2, STEPS, s.kept, x);
-		sparse_fit_gains(fit, x, energy, s.least[i], s.gain + i * s.coefficients);
+			memcpy(x, x + n, n * sizeof *x);
+		sparse_fit_energies(fit, &s.target[i]);
+		sparse_fit_rounds(fit, &s.target[i], keep / count, i + 1 < count ? 1 : 2, STEPS, s.kept, x);
+		sparse_fit_gains(fit, &s.target[i], x, s.gain + i * n);
 	}
-	if (status)
-		goto out;
-	gain_count(counts, s.gain, count * s.coefficients);
-	struct gain_limit limit = gain_limit_of(counts, keep);
-	const float unit = FINE * sqrtf(gain_at(limit));
+	const float unit = status ? 0 : FINE * sqrtf(gains_keep(s.gain, count * n, keep, s.kept));
 	for (uint32_t i = 0; !status && i < count; i++) {
-		float *x = s.x + i * s.coefficients, *wanted = s.wanted + i * s.cells, *weight = s.weight + i * s.cells,
-			  *energy = s.energy + i * s.coefficients;
-		for (size_t n = 0; n < s.coefficients; n++)
-			s.kept[n] = gain_kept(&limit, s.gain[i * s.coefficients + n]);
-		sparse_fit_gradient(fit, wanted, weight, x);
-		sparse_fit_refine(fit, wanted, weight, energy, s.least[i], s.kept, STEPS, x);
-		status = sparse_fit_quantise(fit, wanted, weight, energy, s.least[i], unit, x, &slice[i], error);
+		float *x = s.x + i * n;
+		sparse_fit_gradient(fit, &s.target[i], x);
+		sparse_fit_refine(fit, &s.target[i], s.kept + i * n, STEPS, x);
+		status = sparse_fit_quantise(fit, &s.target[i], unit, x, &slice[i], error);
 	}
-out:
 	slices_free(&s);
-	free(counts);
 	return status;
 }

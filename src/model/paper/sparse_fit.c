@@ -19,18 +19,18 @@ bp_status sparse_fit_create(const struct wavelet_plane *plane, struct sparse_fit
 
 	fit.row_squares = wavelet_squares(plane->kind, plane->rows);
 	fit.column_squares = wavelet_squares(plane->kind, plane->columns);
-	fit.scratch = malloc(3 * n * sizeof(float));
-	fit.field = malloc(n * sizeof(float));
-	fit.gradient = malloc(6 * n * sizeof(float));
-	if (!fit.row_squares || !fit.column_squares || !fit.scratch || !fit.field || !fit.gradient) {
+	fit.scratch = malloc(10 * n * sizeof(float));
+	if (!fit.row_squares || !fit.column_squares || !fit.scratch) {
 		sparse_fit_free(&fit);
 		return error_memory(error, 10 * n * sizeof(float));
 	}
-	fit.inverse = fit.gradient + n;
-	fit.z = fit.gradient + 2 * n;
-	fit.direction = fit.gradient + 3 * n;
-	fit.image = fit.gradient + 4 * n;
-	fit.gain = fit.gradient + 5 * n;
+	fit.field = fit.scratch + 3 * n;
+	fit.gradient = fit.scratch + 4 * n;
+	fit.inverse = fit.scratch + 5 * n;
+	fit.z = fit.scratch + 6 * n;
+	fit.direction = fit.scratch + 7 * n;
+	fit.image = fit.scratch + 8 * n;
+	fit.gain = fit.scratch + 9 * n;
 	*out = fit;
 	return BP_OK;
 }
@@ -40,9 +40,6 @@ void sparse_fit_free(struct sparse_fit *fit)
 	free(fit->row_squares);
 	free(fit->column_squares);
 	free(fit->scratch);
-	free(fit->field);
-	free(fit->gradient);
-	*fit = (struct sparse_fit){.cells = 0};
 }
 
 /* out[a][.] = sum over n of square[a][n] in[n][.]; most squares are 0. */
@@ -57,15 +54,15 @@ static void squares_apply(const float *square, struct wavelet_axis axis, const f
 				kernels->add_scaled(square[a * axis.field + n], in + n * width, width, out + a * width);
 }
 
-float sparse_fit_energies(struct sparse_fit *fit, const float *weight, float *energy)
+void sparse_fit_energies(struct sparse_fit *fit, struct sparse_target *target)
 {
 	const struct wavelet_plane *p = &fit->plane;
 	const size_t rows = p->rows.field, half = p->columns.field, columns = p->field_columns;
-	float *by_column = fit->scratch, *by_row = fit->scratch + fit->coefficients;
+	float *by_column = fit->scratch, *by_row = fit->scratch + fit->coefficients, *energy = target->energy;
 	double sum = 0;
 
 	/* The squares of both parts of a mirrored basis function are the same: half of each at both cells. */
-	squares_apply(fit->row_squares, p->rows, weight, columns, by_row);
+	squares_apply(fit->row_squares, p->rows, target->weight, columns, by_row);
 	for (size_t r = 0; r < p->rows.plane; r++)
 		for (size_t k = 0; k < half; k++)
 			by_column[k * p->rows.plane + r] =
@@ -74,61 +71,44 @@ float sparse_fit_energies(struct sparse_fit *fit, const float *weight, float *en
 	if (p->mirrored)
 		memcpy(energy + fit->coefficients / 2, energy, fit->coefficients / 2 * sizeof *energy);
 	for (size_t i = 0; i < rows * columns; i++)
-		sum += (double)weight[i];
-	const float least = LEAST_SHARE * (float)(sum / (double)(rows * columns));
-	return least > 1e-30f ? least : 1e-30f;
+		sum += (double)target->weight[i];
+	target->least = fmaxf(LEAST_SHARE * (float)(sum / (double)(rows * columns)), 1e-30f);
 }
 
-void sparse_fit_gradient(struct sparse_fit *fit, const float *wanted, const float *weight, const float *x)
+void sparse_fit_gradient(struct sparse_fit *fit, const struct sparse_target *target, const float *x)
 {
 	wavelet_inverse(&fit->plane, x, fit->field, fit->scratch);
-	paper_kernels_get()->residual(weight, wanted, fit->cells, fit->field);
+	paper_kernels_get()->residual(target->weight, target->wanted, fit->cells, fit->field);
 	wavelet_forward(&fit->plane, fit->field, fit->gradient, fit->scratch);
 }
 
-void sparse_fit_gains(const struct sparse_fit *fit, const float *x, const float *energy, float least, float *gain)
+void sparse_fit_gains(const struct sparse_fit *fit, const struct sparse_target *target, const float *x, float *gain)
 {
-	paper_kernels_get()->gains(x, fit->gradient, energy, least, fit->coefficients, gain);
+	paper_kernels_get()->gains(x, fit->gradient, target->energy, target->least, fit->coefficients, gain);
 }
 
 /* ---- the largest gains ---- */
 
-static uint32_t bin_of(float gain) { return bits_of_float(gain) >> 17; }
-
-void gain_count(struct gain_counts *counts, const float *gain, size_t n)
+float gains_keep(const float *gain, size_t n, size_t keep, uint8_t *kept)
 {
+	enum { SHIFT = 17, BINS = 1 << (31 - SHIFT) }; /* by exponent and the first bits behind it */
+	uint32_t count[BINS] = {0}, edge = BINS - 1;
+
 	for (size_t i = 0; i < n; i++)
-		counts->count[bin_of(gain[i])]++;
+		count[bits_of_float(gain[i]) >> SHIFT]++;
+	while (edge > 1 && count[edge] <= keep)
+		keep -= count[edge--];
+	for (size_t i = 0; i < n; i++) {
+		const uint32_t bin = bits_of_float(gain[i]) >> SHIFT;
+		kept[i] = bin > edge || (bin == edge && keep > 0);
+		keep -= bin == edge && keep > 0;
+	}
+	return float_of_bits(edge << SHIFT);
 }
-
-struct gain_limit gain_limit_of(const struct gain_counts *counts, size_t keep)
-{
-	uint32_t edge = sizeof counts->count / sizeof *counts->count - 1;
-	size_t above = 0;
-
-	while (edge > 1 && above + counts->count[edge] <= keep)
-		above += counts->count[edge--];
-	return (struct gain_limit){.edge = edge, .rest = keep - above};
-}
-
-bool gain_kept(struct gain_limit *limit, float gain)
-{
-	const uint32_t bin = bin_of(gain);
-
-	if (bin != limit->edge)
-		return bin > limit->edge;
-	if (!limit->rest)
-		return false;
-	limit->rest--;
-	return true;
-}
-
-float gain_at(struct gain_limit limit) { return float_of_bits(limit.edge << 17); }
 
 /* ---- refinement ---- */
 
-void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
-                       const uint8_t *kept, uint32_t steps, float *x)
+void sparse_fit_refine(struct sparse_fit *fit, const struct sparse_target *target, const uint8_t *kept, uint32_t steps, float *x)
 {
 	const struct paper_kernels *kernels = paper_kernels_get();
 	const size_t n = fit->coefficients;
@@ -136,20 +116,20 @@ void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float 
 	double explained = 0;
 
 	for (size_t i = 0; i < n; i++) {
-		fit->inverse[i] = kept[i] ? 1 / (energy[i] + least) : 0;
+		fit->inverse[i] = kept[i] ? 1 / (target->energy[i] + target->least) : 0;
 		if (!kept[i] && x[i] != 0) {
 			x[i] = 0;
 			dropped = true;
 		}
-		explained += (double)(energy[i] * x[i] * x[i]);
+		explained += (double)(target->energy[i] * x[i] * x[i]);
 	}
 	if (dropped)
-		sparse_fit_gradient(fit, wanted, weight, x);
+		sparse_fit_gradient(fit, target, x);
 	double size = kernels->precondition(fit->inverse, fit->gradient, n, fit->direction);
 	const double noise = fmax(SETTLED * size, ROUNDING * explained); /* below it single precision has no direction left to go */
 	for (uint32_t step = 0; step < steps && size > noise; step++) {
 		wavelet_inverse(&fit->plane, fit->direction, fit->field, fit->scratch);
-		const double curvature = kernels->weigh(weight, fit->cells, fit->field);
+		const double curvature = kernels->weigh(target->weight, fit->cells, fit->field);
 		if (!(curvature > 0))
 			break;
 		const float length = (float)(size / curvature);
@@ -162,56 +142,49 @@ void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float 
 	}
 }
 
-float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
-                        size_t keep, uint32_t rounds, uint32_t steps, uint8_t *kept, float *x)
+float sparse_fit_rounds(struct sparse_fit *fit, const struct sparse_target *target, size_t keep, uint32_t rounds, uint32_t steps,
+                        uint8_t *kept, float *x)
 {
-	static const struct gain_counts NONE;
-	struct gain_counts counts;
 	float edge = 0;
 
-	sparse_fit_gradient(fit, wanted, weight, x);
+	sparse_fit_gradient(fit, target, x);
 	for (uint32_t round = 0; round < rounds; round++) {
-		counts = NONE;
-		sparse_fit_gains(fit, x, energy, least, fit->gain);
-		gain_count(&counts, fit->gain, fit->coefficients);
-		struct gain_limit limit = gain_limit_of(&counts, keep);
-		edge = gain_at(limit);
-		for (size_t i = 0; i < fit->coefficients; i++)
-			kept[i] = gain_kept(&limit, fit->gain[i]);
-		sparse_fit_refine(fit, wanted, weight, energy, least, kept, steps, x);
+		sparse_fit_gains(fit, target, x, fit->gain);
+		edge = gains_keep(fit->gain, fit->coefficients, keep, kept);
+		sparse_fit_refine(fit, target, kept, steps, x);
 	}
 	return edge;
 }
 
 /* ---- quantising ---- */
 
-bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const float *weight)
+bool sparse_fit_is_one(const struct sparse_fit *fit, const struct sparse_target *target)
 {
 	double squares = 0;
 	size_t count = 0;
 
 	for (size_t i = 0; i < fit->cells; i++)
-		if (weight[i] > 0) {
-			const double d = (double)wanted[i] - 1;
+		if (target->weight[i] > 0) {
+			const double d = (double)target->wanted[i] - 1;
 			squares += d * d;
 			count++;
 		}
 	return !(squares > LEFT_OUT * LEFT_OUT * (double)count);
 }
 
-bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
-                              float unit, const float *x, struct sparse_field *out, bp_error *error)
+bp_status sparse_fit_quantise(const struct sparse_fit *fit, const struct sparse_target *target, float unit, const float *x,
+                              struct sparse_field *out, bp_error *error)
 {
 	const size_t n = fit->coefficients;
 	double logs = 0, largest = 0;
-	size_t count = 0;
+	uint32_t count = 0;
 
 	*out = (struct sparse_field){.count = 0};
-	if (sparse_fit_is_one(fit, wanted, weight))
+	if (sparse_fit_is_one(fit, target))
 		return BP_OK;
 	for (size_t i = 0; i < n; i++)
 		if (x[i] != 0) {
-			logs += fast_log2((double)(energy[i] + 1e-6f * least) + 1e-300);
+			logs += fast_log2((double)(target->energy[i] + 1e-6f * target->least) + 1e-300);
 			largest = fmax(largest, fabs((double)x[i]));
 			count++;
 		}
@@ -220,10 +193,9 @@ bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const
 	const long code = lrint(ceil(256 * fast_log2(step))) + PAPER_STEP_ONE;
 	out->step = (uint16_t)(code < PAPER_STEP_LEAST ? PAPER_STEP_LEAST : code > PAPER_STEP_MOST ? PAPER_STEP_MOST : code);
 	const float unit_of_levels = paper_step(out->step);
-	out->index = malloc((count ? count : 1) * sizeof *out->index);
-	out->level = malloc((count ? count : 1) * sizeof *out->level);
-	if (!out->index || !out->level)
-		return error_memory(error, count * (sizeof *out->index + sizeof *out->level));
+	const bp_status status = sparse_field_alloc(count ? count : 1, out, error);
+	if (status)
+		return status;
 	for (size_t i = 0; i < n; i++) {
 		const long level = lrintf(x[i] / unit_of_levels);
 		if (!level)

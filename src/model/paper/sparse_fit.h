@@ -18,7 +18,7 @@ struct sparse_fit {
 	struct wavelet_plane plane;
 	size_t cells, coefficients;
 	float *row_squares, *column_squares;
-	float *scratch;                                    /* 3 planes, of the transform */
+	float *scratch;                                    /* 3 planes, of the transform; owns those that follow */
 	float *field;                                      /* T of something */
 	float *gradient, *inverse, *z, *direction, *image; /* of coefficients */
 	float *gain;
@@ -27,47 +27,45 @@ struct sparse_fit {
 bp_status sparse_fit_create(const struct wavelet_plane *plane, struct sparse_fit *out, bp_error *error);
 void sparse_fit_free(struct sparse_fit *fit);
 
-/* energy[coefficients] for weight[cells]; returns what the preconditioner adds. */
-float sparse_fit_energies(struct sparse_fit *fit, const float *weight, float *energy);
+/* What a field should be, how much each cell of it matters, and what follows from that: of sparse_fit_energies. */
+struct sparse_target {
+	float *wanted, *weight; /* [cells] */
+	float *energy;          /* [coefficients] */
+	float least;            /* what the preconditioner adds to them */
+};
+
+/* Sets what target->energy points to, and target->least, from the weights. */
+void sparse_fit_energies(struct sparse_fit *fit, struct sparse_target *target);
 
 /* fit->gradient for the coefficients x. */
-void sparse_fit_gradient(struct sparse_fit *fit, const float *wanted, const float *weight, const float *x);
+void sparse_fit_gradient(struct sparse_fit *fit, const struct sparse_target *target, const float *x);
 /* Gains of all coefficients, from x and fit->gradient. */
-void sparse_fit_gains(const struct sparse_fit *fit, const float *x, const float *energy, float least, float *gain);
+void sparse_fit_gains(const struct sparse_fit *fit, const struct sparse_target *target, const float *x, float *gain);
 
-/* Which gains are kept when a number is to be: all in bins above `edge`, and of those in it the first `rest`. */
-struct gain_limit {
-	uint32_t edge;
-	size_t rest;
-};
-struct gain_counts {
-	uint32_t count[1 << 14]; /* by exponent and the first bits behind it: gains of a bin differ by 1/64 */
-};
-void gain_count(struct gain_counts *counts, const float *gain, size_t n);
-/* The `keep` largest of those counted; gains of 0 are never kept. */
-struct gain_limit gain_limit_of(const struct gain_counts *counts, size_t keep);
-bool gain_kept(struct gain_limit *limit, float gain); /* ask for each once, in order */
-float gain_at(struct gain_limit limit);               /* the least gain of the edge's bin */
+/*
+ * kept[n]: 1 for the `keep` largest gains, to within 1/64, the first of those that are as good; gains of 0 are never kept.
+ * Returns about the least that is.
+ */
+float gains_keep(const float *gain, size_t n, size_t keep, uint8_t *kept);
 
 /*
  * Zeroes x where not kept and takes `steps` conjugate-gradient steps on those that are; fit->gradient must belong to x when
  * called, and does when it returns.
  */
-void sparse_fit_refine(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
-                       const uint8_t *kept, uint32_t steps, float *x);
+void sparse_fit_refine(struct sparse_fit *fit, const struct sparse_target *target, const uint8_t *kept, uint32_t steps, float *x);
 
-/* `rounds` rounds from x, `keep` coefficients each; energy, least: of sparse_fit_energies. Returns the last round's gain_at. */
-float sparse_fit_rounds(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
-                        size_t keep, uint32_t rounds, uint32_t steps, uint8_t *kept, float *x);
+/* `rounds` rounds from x, `keep` coefficients each. Returns what the last round's gains_keep does. */
+float sparse_fit_rounds(struct sparse_fit *fit, const struct sparse_target *target, size_t keep, uint32_t rounds, uint32_t steps,
+                        uint8_t *kept, float *x);
 
 /* Whether the field is 1 within a thousandth, rms over the cells with a weight. */
-bool sparse_fit_is_one(const struct sparse_fit *fit, const float *wanted, const float *weight);
+bool sparse_fit_is_one(const struct sparse_fit *fit, const struct sparse_target *target);
 
 /*
  * Quantises: levels of step `unit` / sqrt(the geometric mean of the energies of what is not 0). A field that is 1 is left out
  * (count 0). The caller owns out's arrays.
  */
-bp_status sparse_fit_quantise(struct sparse_fit *fit, const float *wanted, const float *weight, const float *energy, float least,
-                              float unit, const float *x, struct sparse_field *out, bp_error *error);
+bp_status sparse_fit_quantise(const struct sparse_fit *fit, const struct sparse_target *target, float unit, const float *x,
+                              struct sparse_field *out, bp_error *error);
 
 #endif

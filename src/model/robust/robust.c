@@ -7,7 +7,6 @@
 
 #include "error.h"
 #include "robust_kernels.h"
-#include "robust_iterate.h"
 #include "robust_walk.h"
 
 static const double LEVERAGE_MAX = 0.9999;
@@ -16,28 +15,35 @@ static const double LEVERAGE_MAX = 0.9999;
 
 enum { ANCHOR_WORTH = 1 << 15 };
 
+/* The observations, and what the unweighted design gives once. */
+struct design {
+	double *x;      /* n values, the largest about 1; owns what follows */
+	double *y;      /* likewise */
+	double *excess; /* 1/sqrt(1 - h) - 1 */
+	double *inside; /* n + 1: values gathered around the median */
+	double *picked; /* room for x, y and excess of robust_picks(n) observations */
+	size_t n;
+	double mean_x;
+	struct robust_anchor anchor; /* room for one, or empty where n is small */
+};
+
 static void design_free(struct design *design)
 {
 	free(design->x);
-	free(design->y);
-	free(design->excess);
-	free(design->inside);
-	free(design->picked);
-	free(design->picked_excess);
-	robust_anchor_free(&design->anchor);
+	free(design->anchor.near.x);
 }
 
 static bp_status design_alloc(size_t n, struct design *design, bp_error *error)
 {
-	*design = (struct design){.n = n};
-	design->x = malloc(n * sizeof *design->x);
-	design->y = malloc(n * sizeof *design->y);
-	design->excess = malloc(n * sizeof *design->excess);
-	design->inside = malloc((n + 1) * sizeof *design->inside);
-	design->picked = malloc((2 * robust_picks(n) + 1) * sizeof *design->picked);
-	design->picked_excess = malloc((robust_picks(n) + 1) * sizeof *design->picked_excess);
-	if (!design->x || !design->y || !design->excess || !design->inside || !design->picked || !design->picked_excess)
-		return error_memory(error, n * 4 * sizeof(double));
+	const size_t bytes = (4 * n + 1 + 3 * robust_picks(n)) * sizeof(double);
+
+	*design = (struct design){.n = n, .x = malloc(bytes)};
+	if (!design->x)
+		return error_memory(error, bytes);
+	design->y = design->x + n;
+	design->excess = design->y + n;
+	design->inside = design->excess + n;
+	design->picked = design->inside + n + 1;
 	/* Few observations are read through as quickly as an anchor is placed. */
 	return n < ANCHOR_WORTH ? BP_OK : robust_anchor_alloc(n / 6, &design->anchor, error);
 }
@@ -70,7 +76,7 @@ struct power {
 };
 static struct power power_of(int e) { return (struct power){ldexp(1, e / 2), ldexp(1, e - e / 2)}; }
 
-/* Mean, Sxx and leverages of the scaled x. */
+/* Mean and leverages of the scaled x. */
 static void design_prepare(struct design *design)
 {
 	const struct robust_kernels *kernels = robust_kernels_get();
@@ -85,14 +91,56 @@ static void design_prepare(struct design *design)
 	design->mean_x = x[0] + sums.wx / n; /* exact when x is constant */
 	line.centre_x = line.centre_y = design->mean_x;
 	kernels->robust_sums(&sample, &line, 0, &sums);
-	design->sxx = fmax(0, sums.wxx - sums.wx * (sums.wx / n));
 
-	const double inverse = design->sxx > 0 ? 1 / design->sxx : 0, mean = design->mean_x, base = 1 - 1 / n,
-				 least = 1 - LEVERAGE_MAX;
+	const double sxx = sums.wxx - sums.wx * (sums.wx / n), inverse = sxx > 0 ? 1 / sxx : 0, mean = design->mean_x,
+				 base = 1 - 1 / n, least = 1 - LEVERAGE_MAX;
 	for (size_t i = 0; i < design->n; i++) {
 		double d = x[i] - mean, rest = base - d * d * inverse;
 		design->excess[i] = 1 / sqrt(rest < least ? least : rest) - 1;
 	}
+}
+
+/* ---- the fit ---- */
+
+/* Copies the picks: where they stand, every one would be a cache miss each time. */
+static struct robust_sample picks_copy(struct design *design)
+{
+	const size_t count = robust_picks(design->n);
+	double *x = design->picked, *y = x + count, *excess = y + count;
+
+	for (size_t k = 0; k < count; k++) {
+		const size_t i = k * design->n / count;
+		x[k] = design->x[i];
+		y[k] = design->y[i];
+		excess[k] = design->excess[i];
+	}
+	return (struct robust_sample){x, y, excess, count};
+}
+
+/* The regression of y on x of a prepared design: coefficients in the scaled units. n >= 2. At most `limit` iterations. */
+static void design_iterate(struct design *design, uint32_t limit, struct robust_fit *out)
+{
+	struct walk walk = {
+		.kernels = robust_kernels_get(),
+		.sample = {design->x, design->y, design->excess, design->n},
+		.picks = picks_copy(design),
+		.inside = design->inside,
+		.line = {design->mean_x, design->y[0], 0, 0},
+		.anchor = design->anchor.near.capacity ? &design->anchor : NULL,
+	};
+
+	walk_start(&walk);
+	design->anchor.placed = false;
+	out->converged = false;
+	out->iterations = 0;
+	while (!out->converged && out->iterations < limit) {
+		out->iterations++;
+		walk_step(&walk, limit - out->iterations);
+		out->converged = line_settled(&walk.before, &walk.line);
+	}
+	out->rejected = walk.sums.rejected;
+	out->slope = walk.line.slope;
+	out->intercept = line_intercept(&walk.line);
 }
 
 /*
@@ -119,7 +167,6 @@ static void design_fit(struct design *design, double unit, uint32_t limit, bool 
 	int unit_exponent;
 	const double mantissa = frexp(unit, &unit_exponent);
 
-	design->x_exponent = float_exponent + unit_exponent;
 	for (size_t k = 0; k < n; k++) {
 		design->x[k] = design->x[k] * p.a * p.b * mantissa;
 		design->y[k] = design->y[k] * q.a * q.b;
@@ -128,11 +175,11 @@ static void design_fit(struct design *design, double unit, uint32_t limit, bool 
 		*out = (struct robust_fit){.intercept = design->y[0], .converged = true};
 	} else {
 		design_prepare(design);
-		robust_iterate(design, limit, out);
+		design_iterate(design, limit, out);
 	}
 	if (still)
 		fit_still(out);
-	const struct power back = power_of(y_exponent), slope = power_of(y_exponent - design->x_exponent);
+	const struct power back = power_of(y_exponent), slope = power_of(y_exponent - float_exponent - unit_exponent);
 	out->intercept = out->intercept * back.a * back.b;
 	out->slope = out->slope * slope.a * slope.b;
 }

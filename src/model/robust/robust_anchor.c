@@ -2,40 +2,21 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 
-static bool list_alloc(size_t capacity, struct anchor_list *list)
-{
-	list->capacity = capacity;
-	list->x = malloc(capacity * sizeof *list->x);
-	list->y = malloc(capacity * sizeof *list->y);
-	list->excess = malloc(capacity * sizeof *list->excess);
-	return list->x && list->y && list->excess;
-}
-
-static void list_free(struct anchor_list *list)
-{
-	free(list->x);
-	free(list->y);
-	free(list->excess);
-}
-
 bp_status robust_anchor_alloc(size_t capacity, struct robust_anchor *out, bp_error *error)
 {
-	memset(out, 0, sizeof *out);
-	if (list_alloc(capacity, &out->near) && list_alloc(capacity, &out->edge))
-		return BP_OK;
-	robust_anchor_free(out);
-	return error_memory(error, 2 * capacity * 3 * sizeof(double));
-}
+	const size_t bytes = 6 * capacity * sizeof(double);
+	double *block = malloc(bytes);
 
-void robust_anchor_free(struct robust_anchor *anchor)
-{
-	list_free(&anchor->near);
-	list_free(&anchor->edge);
-	memset(anchor, 0, sizeof *anchor);
+	if (!block)
+		return error_memory(error, bytes);
+	*out = (struct robust_anchor){
+		.near = {block, block + capacity, block + 2 * capacity, 0, capacity},
+		.edge = {block + 3 * capacity, block + 4 * capacity, block + 5 * capacity, 0, capacity},
+	};
+	return BP_OK;
 }
 
 bool robust_anchor_place(struct robust_anchor *anchor, const struct robust_sample *sample, const struct robust_line *line,
@@ -43,9 +24,7 @@ bool robust_anchor_place(struct robust_anchor *anchor, const struct robust_sampl
 {
 	anchor->line = *line;
 	anchor->reach = *reach;
-	anchor->sums.near = &anchor->near;
-	anchor->sums.edge = &anchor->edge;
-	anchor->placed = robust_kernels_get()->robust_anchor(sample, line, reach, &anchor->sums);
+	anchor->placed = robust_kernels_get()->robust_anchor(sample, line, reach, &anchor->near, &anchor->edge, &anchor->sums);
 	return anchor->placed;
 }
 

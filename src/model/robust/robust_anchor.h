@@ -25,13 +25,13 @@ struct robust_anchor {
 	struct robust_line line;
 	struct anchor_reach reach;
 	struct anchor_sums sums;
-	struct anchor_list near, edge;
+	struct anchor_list near; /* observations that may cross the median */
+	struct anchor_list edge; /* those whose weight may become or leave 0 */
 	bool placed;
 };
 
-/* Room for lists of up to `capacity` observations each. */
+/* Room for lists of up to `capacity` observations each, one block at near.x, which is freed with free(). */
 bp_status robust_anchor_alloc(size_t capacity, struct robust_anchor *out, bp_error *error);
-void robust_anchor_free(struct robust_anchor *anchor);
 
 /* Places the anchor. False, and nothing placed, when the reach is so wide that the lists overflow. */
 bool robust_anchor_place(struct robust_anchor *anchor, const struct robust_sample *sample, const struct robust_line *line,

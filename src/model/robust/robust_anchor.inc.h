@@ -8,44 +8,43 @@ struct KERNEL(anchor_block) {
 	double t[ANCHOR_BLOCK], r[ANCHOR_BLOCK], l2[ANCHOR_BLOCK], kept[ANCHOR_BLOCK];
 };
 
-/* Sums of weight r^p t^i over a block, for the i of one call: all p from 0 to last[i]. */
-#define ANCHOR_SWEEP(name, i0, count0, count1, count2) \
-	static inline void KERNEL(name)(const struct KERNEL(anchor_block) *b, const double *weight, double(*sum)[ANCHOR_T]) \
-	{ \
-		lanes4 s[3][6] = {{{0}}}; \
-		for (size_t n = 0; n < ANCHOR_BLOCK; n += 4) { \
-			const lanes4 t = LANES_LOAD(b->t + n), r = LANES_LOAD(b->r + n); \
-			lanes4 v = LANES_LOAD(weight + n), u; \
-			for (int i = 0; i < (i0); i++) \
-				v *= t; \
-			u = v; \
-			for (int p = 0; p < (count0); p++, u *= r) \
-				s[0][p] += u; \
-			v *= t; \
-			u = v; \
-			for (int p = 0; p < (count1); p++, u *= r) \
-				s[1][p] += u; \
-			v *= t; \
-			u = v; \
-			for (int p = 0; p < (count2); p++, u *= r) \
-				s[2][p] += u; \
-		} \
-		for (int p = 0; p < (count0); p++) \
-			sum[p][i0] = lanes_sum(&s[0][p]); \
-		for (int p = 0; p < (count1); p++) \
-			sum[p][(i0) + 1] = lanes_sum(&s[1][p]); \
-		for (int p = 0; p < (count2); p++) \
-			sum[p][(i0) + 2] = lanes_sum(&s[2][p]); \
-	}
+/* Adds v r^p for p < count, and multiplies v by t. */
+static inline
+	__attribute__((always_inline)) void KERNEL(anchor_powers)(lanes4 *v, const lanes4 *t, const lanes4 *r, int count, lanes4 *sum)
+{
+	lanes4 u = *v;
+	for (int p = 0; p < count; p++, u *= *r)
+		sum[p] += u;
+	*v *= *t;
+}
 
-/* At most 12 sums at a time, so that they stay in registers. */
-ANCHOR_SWEEP(anchor_plain, 0, 3, 2, 1)
-ANCHOR_SWEEP(anchor_square_low, 0, 4, 4, 0)
-ANCHOR_SWEEP(anchor_square_high, 2, 3, 2, 1)
-ANCHOR_SWEEP(anchor_fourth_low, 0, 6, 6, 0)
-ANCHOR_SWEEP(anchor_fourth_middle, 2, 5, 4, 0)
-ANCHOR_SWEEP(anchor_fourth_high, 4, 3, 2, 1)
-#undef ANCHOR_SWEEP
+/*
+ * Sums of weight r^p t^i over a block, for i = i0, i0 + 1, i0 + 2 and p below the count of each. Counts are constants, at most 12
+ * in all at a time, so that the sums stay in registers.
+ */
+static inline
+	__attribute__((always_inline)) void KERNEL(anchor_sweep)(const struct KERNEL(anchor_block) *b, const double *weight, int i0,
+                                                             int count0, int count1, int count2, double (*sum)[ANCHOR_T])
+{
+	lanes4 s[3][6] = {{{0}}};
+	for (size_t n = 0; n < ANCHOR_BLOCK; n += 4) {
+		const lanes4 t = LANES_LOAD(b->t + n), r = LANES_LOAD(b->r + n);
+		lanes4 v = LANES_LOAD(weight + n);
+		for (int i = 0; i < i0; i++)
+			v *= t;
+		KERNEL(anchor_powers)(&v, &t, &r, count0, s[0]);
+		KERNEL(anchor_powers)(&v, &t, &r, count1, s[1]);
+		KERNEL(anchor_powers)(&v, &t, &r, count2, s[2]);
+	}
+	for (int p = 0; p < 6; p++) {
+		if (p < count0)
+			sum[p][i0] = lanes_sum(&s[0][p]);
+		if (p < count1)
+			sum[p][i0 + 1] = lanes_sum(&s[1][p]);
+		if (p < count2)
+			sum[p][i0 + 2] = lanes_sum(&s[2][p]);
+	}
+}
 
 /* Copies the observations of one group that are flagged to the list, which has room. */
 static inline void KERNEL(anchor_copy)(struct anchor_list *list, const double *x, const double *y, const double *excess,
@@ -72,7 +71,8 @@ static inline void KERNEL(anchor_add)(const double *sum, double *restrict total,
 }
 
 static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const struct robust_line *line,
-                                  const struct anchor_reach *reach, struct anchor_sums *out)
+                                  const struct anchor_reach *reach, struct anchor_list *near_list, struct anchor_list *edge_list,
+                                  struct anchor_sums *out)
 {
 	struct KERNEL(anchor_block) b;
 	double l4[ANCHOR_BLOCK];
@@ -82,10 +82,8 @@ static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const stru
 	const lanes4 inner = LANES_ALL(reach->limit_low), outer = LANES_ALL(reach->limit_high);
 	const mask4 sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
 	double sum[3][ANCHOR_R][ANCHOR_T], total[3][ANCHOR_R][ANCHOR_T] = {{{0}}}, rest[3][ANCHOR_R][ANCHOR_T] = {{{0}}};
-	struct anchor_list *const near_list = out->near, *const edge_list = out->edge;
 	mask4 below = {0, 0, 0, 0}, outside = {0, 0, 0, 0};
 
-	*out = (struct anchor_sums){.near = near_list, .edge = edge_list};
 	near_list->count = edge_list->count = 0;
 	for (size_t start = 0; start < sample->n; start += ANCHOR_BLOCK) {
 		const size_t m = sample->n - start < ANCHOR_BLOCK ? sample->n - start : ANCHOR_BLOCK;
@@ -146,12 +144,12 @@ static bool KERNEL(robust_anchor)(const struct robust_sample *sample, const stru
 			}
 		}
 		memset(sum, 0, sizeof sum);
-		KERNEL(anchor_plain)(&b, b.kept, sum[0]);
-		KERNEL(anchor_square_low)(&b, b.l2, sum[1]);
-		KERNEL(anchor_square_high)(&b, b.l2, sum[1]);
-		KERNEL(anchor_fourth_low)(&b, l4, sum[2]);
-		KERNEL(anchor_fourth_middle)(&b, l4, sum[2]);
-		KERNEL(anchor_fourth_high)(&b, l4, sum[2]);
+		KERNEL(anchor_sweep)(&b, b.kept, 0, 3, 2, 1, sum[0]);
+		KERNEL(anchor_sweep)(&b, b.l2, 0, 4, 4, 0, sum[1]);
+		KERNEL(anchor_sweep)(&b, b.l2, 2, 3, 2, 1, sum[1]);
+		KERNEL(anchor_sweep)(&b, l4, 0, 6, 6, 0, sum[2]);
+		KERNEL(anchor_sweep)(&b, l4, 2, 5, 4, 0, sum[2]);
+		KERNEL(anchor_sweep)(&b, l4, 4, 3, 2, 1, sum[2]);
 		KERNEL(anchor_add)((const double *)sum, (double *)total, (double *)rest);
 	}
 	for (int k = 0; k < 3; k++)

@@ -48,10 +48,8 @@ struct anchor_sums {
 	 * weight stays above 0; for p + i <= 2 + 2k, p <= 1 + 2k or k = 0, else 0.
 	 */
 	double moment[3][ANCHOR_R][ANCHOR_T];
-	size_t below;             /* observations that stay below the median */
-	size_t outside;           /* observations whose weight stays 0 */
-	struct anchor_list *near; /* those that may cross the median */
-	struct anchor_list *edge; /* those whose weight may become or leave 0 */
+	size_t below;   /* observations that stay below the median */
+	size_t outside; /* observations whose weight stays 0 */
 };
 
 struct robust_kernels {
@@ -67,11 +65,11 @@ struct robust_kernels {
 	                    struct robust_sums *out);
 
 	/*
-	 * All of *out for one line; blocks of 256 in four lanes, blocks compensated. False, with *out unspecified, when a list
-	 * has no room for another 256.
+	 * All of *out for one line, and the lists; blocks of 256 in four lanes, blocks compensated. False, with these unspecified,
+	 * when a list has no room for another 256.
 	 */
 	bool (*robust_anchor)(const struct robust_sample *sample, const struct robust_line *line, const struct anchor_reach *reach,
-	                      struct anchor_sums *out);
+	                      struct anchor_list *near, struct anchor_list *edge, struct anchor_sums *out);
 };
 
 KERNELS_OF(robust)

@@ -8,7 +8,7 @@
 
 /*
  * Some of n observations, evenly spread, tell where to look for the rest: the more of them, the narrower the bracket around
- * the median; 0 of a few. PICKS_MAX is the largest number.
+ * the median; 0 of a few. ROBUST_PICKS_MAX is the largest number.
  */
 enum { ROBUST_PICKS_MAX = 8192 };
 static inline size_t robust_picks(size_t n)

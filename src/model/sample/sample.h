@@ -1,7 +1,7 @@
 /*
  * sample.h: importance sampling of f(wi, wo) cos theta_i for a given wo (the paper's eq. 8, made practical).
  *
- * For SAMPLER_NODES angles theta_o, a density over the half-angle h in the frame where wo has azimuth 0:
+ * For NODES angles theta_o (sampler.h), a density over the half-angle h in the frame where wo has azimuth 0:
  * piecewise constant in s = sin^2(theta_h / 2) and in |phi_h| (isotropic materials are nearly mirror-symmetric;
  * what little is not costs variance, never exactness). dw_h = 2 ds dphi and dw_i = 4 (wo.h) dw_h, so a bin's
  * mass is the sum of mean(R, G, B) cos theta_i 4 (wo.h) over it. Bins are as the lattice's: edge n at

@@ -23,7 +23,7 @@ struct node {
 struct cosines {
 	uint32_t n;
 	struct node *root;
-	float *in, *out, *scratch, *rest; /* [n][WIDTH], the last [WIDTH][n] */
+	float *out, *scratch, *rest, in[]; /* [n][WIDTH], rest [WIDTH][n]; all in one block */
 };
 
 /* From the first quadrant only, so that equal angles give equal values. */
@@ -52,22 +52,13 @@ static void node_free(struct node *node)
 	free(node);
 }
 
-static float *second_table(uint32_t n, uint32_t parity, float scale)
+/* scale cos(pi (2 m + parity) (2 k + 1) / 2 p), [m][k], `count` of both. */
+static float *table_make(uint32_t count, uint32_t parity, uint32_t p, float scale)
 {
-	const uint32_t count = parity ? n / 2 : (n + 1) / 2;
 	float *table = malloc((size_t)(count ? count * count : 1) * sizeof *table);
 	for (uint32_t m = 0; m < count && table; m++)
 		for (uint32_t k = 0; k < count; k++)
-			table[m * count + k] = (float)((double)scale * cosines_exact((uint64_t)(2 * m + parity) * (2 * k + 1), n));
-	return table;
-}
-
-static float *fourth_table(uint32_t n, float scale)
-{
-	float *table = malloc((size_t)n * n * sizeof *table);
-	for (uint32_t m = 0; m < n && table; m++)
-		for (uint32_t k = 0; k < n; k++)
-			table[m * n + k] = (float)((double)scale * cosines_exact((uint64_t)(2 * m + 1) * (2 * k + 1), 2 * n));
+			table[m * count + k] = (float)((double)scale * cosines_exact((uint64_t)(2 * m + parity) * (2 * k + 1), p));
 	return table;
 }
 
@@ -91,8 +82,8 @@ static struct node *node_make(uint32_t n, int fourth, float scale)
 	node->fourth = fourth;
 	int good;
 	if (n % 2 || n <= SMALL) {
-		node->table[0] = fourth ? fourth_table(n, scale) : second_table(n, 0, scale);
-		node->table[1] = fourth ? NULL : second_table(n, 1, scale);
+		node->table[0] = fourth ? table_make(n, 1, 2 * n, scale) : table_make((n + 1) / 2, 0, n, scale);
+		node->table[1] = fourth ? NULL : table_make(n / 2, 1, n, scale);
 		good = node->table[0] && (fourth || node->table[1]);
 	} else {
 		node->child[0] = node_make(n / 2, 0, scale);
@@ -108,18 +99,18 @@ static struct node *node_make(uint32_t n, int fourth, float scale)
 
 bp_status cosines_create(uint32_t n, struct cosines **out, bp_error *error)
 {
-	struct cosines *c = calloc(1, sizeof *c);
-
-	if (!c)
-		return error_memory(error, sizeof *c);
-	c->n = n;
-	c->root = node_make(n, 0, (float)sqrt(2.0 / n));
 	/* A node leaves at most 2 n rows behind for its children's work, which have half as many values. */
-	c->in = malloc((size_t)n * WIDTH * 7 * sizeof(float));
-	if (!c->root || !c->in) {
-		cosines_free(c);
-		return error_memory(error, (size_t)n * WIDTH * 7 * sizeof(float));
+	const size_t bytes = sizeof(struct cosines) + (size_t)n * WIDTH * 7 * sizeof(float);
+	struct cosines *c = malloc(bytes);
+	struct node *root = node_make(n, 0, (float)sqrt(2.0 / n));
+
+	if (!c || !root) {
+		node_free(root);
+		free(c);
+		return error_memory(error, bytes);
 	}
+	c->n = n;
+	c->root = root;
 	c->out = c->in + (size_t)n * WIDTH;
 	c->rest = c->out + (size_t)n * WIDTH;
 	c->scratch = c->rest + (size_t)n * WIDTH;
@@ -132,7 +123,6 @@ void cosines_free(struct cosines *cosines)
 	if (!cosines)
 		return;
 	node_free(cosines->root);
-	free(cosines->in);
 	free(cosines);
 }
 

@@ -18,7 +18,7 @@ struct matrices {
 
 struct span_cosines {
 	uint32_t p;
-	float *work; /* even and odd halves, SPAN_ROWS of them */
+	float *work; /* even and odd halves, SPAN_ROWS of them; behind the matrices */
 	struct matrices of[];
 };
 
@@ -107,14 +107,15 @@ static bool matrices_make(uint32_t n, uint32_t p, uint32_t harmonics, bool inver
 bp_status span_cosines_create(uint32_t p, const uint16_t *span, size_t rows, uint32_t harmonics, bool inverse,
                               struct span_cosines **out, bp_error *error)
 {
-	const size_t bytes = sizeof(struct span_cosines) + ((size_t)p + 1) * sizeof(struct matrices);
+	const size_t matrices = ((size_t)p + 1) * sizeof(struct matrices), work = 4 * (size_t)padded(p) * SPAN_ROWS * sizeof(float);
+	const size_t bytes = sizeof(struct span_cosines) + matrices + work;
 	struct span_cosines *c = calloc(1, bytes);
 	bool good = c != NULL;
 
-	if (c) {
-		c->p = p;
-		good = (c->work = malloc(4 * (size_t)padded(p) * SPAN_ROWS * sizeof *c->work)) != NULL;
-	}
+	if (!c)
+		return error_memory(error, bytes);
+	c->p = p;
+	c->work = (float *)(c->of + p + 1);
 	for (size_t r = 0; r < rows && good; r++)
 		good = c->of[span[r]].matrix[0] || matrices_make(span[r], p, harmonics, inverse, &c->of[span[r]]);
 	if (!good) {
@@ -130,8 +131,6 @@ void span_cosines_free(struct span_cosines *c)
 	for (uint32_t n = 0; c && n <= c->p; n++)
 		for (int parity = 0; parity < 2; parity++)
 			free(c->of[n].matrix[parity]);
-	if (c)
-		free(c->work);
 	free(c);
 }
 

@@ -98,11 +98,6 @@ float spectral_level_value(const struct spectral_model *model, int32_t level, ui
 bp_status spectral_denoise(struct spectrum *spectrum, struct lattice_dims dims, const struct watch *watch, float *const field[3],
                            float *level, bp_error *error);
 
-/* spectral_rank.c: coefficients that a record of so many bytes has room for. */
-double spectral_places(double budget_bytes);
-/* The size above which there are about `count` of the coefficients [rows][lanes], from one row in `every`. */
-float spectral_size_of_rank(const float *coefficient, size_t rows, size_t lanes, size_t every, double count);
-
 /*
  * spectral_project.c: `steps` improvements of the values for invalid cells of three filled tables of logarithms, for a record of
  * about so many bytes with such weights. The spectrum's rows are cut at `limit`.
@@ -110,6 +105,10 @@ float spectral_size_of_rank(const float *coefficient, size_t rows, size_t lanes,
 bp_status spectral_project(struct spectrum *spectrum, struct lattice_dims dims, const uint8_t *valid, const float base[3],
                            const struct spectral_weights *weights, float limit, double budget_bytes, int steps,
                            float *const table[3], bp_error *error);
+/* Coefficients that a record of so many bytes has room for. */
+double spectral_places(double budget_bytes);
+/* The size above which there are about `count` of the coefficients [rows][lanes], from one row in `every`. */
+float spectral_size_of_rank(const float *coefficient, size_t rows, size_t lanes, size_t every, double count);
 
 /*
  * spectral_fill.c: values for invalid cells of three tables [theta_h][theta_d][phi_d] of logarithms. Where `ready` is set, it

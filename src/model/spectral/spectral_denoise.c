@@ -59,98 +59,100 @@ static double ranked(const float *size, size_t n, size_t rank, double *few)
 
 static double median(const float *size, size_t n, double *few) { return ranked(size, n, n / 2, few); }
 
-/* Is the row in whose middle the detail (y, x) of the finest diagonal band lies a whole one? */
-static bool detail_whole(struct lattice_dims d, const uint16_t *span, uint32_t y, uint32_t x)
+/* The finest diagonal band of a spectrum, and room for medians of it. */
+struct finest {
+	struct lattice_dims dims;
+	const uint16_t *span;
+	const float *band;
+	uint32_t rows, columns;
+	float *sample;
+	double *few;
+};
+
+/* The lanes of its detail (y, x), or NULL where the row in whose middle that lies is not a whole one. */
+static const float *detail_lanes(const struct finest *f, uint32_t y, uint32_t x)
 {
-	return span[(2 * y + 1) * d.theta_d + 2 * x + 1] == d.phi_d;
+	const struct lattice_dims d = f->dims;
+	return f->span[(2 * y + 1) * d.theta_d + 2 * x + 1] == d.phi_d ? f->band + ((size_t)y * d.theta_d + x) * d.phi_d : NULL;
 }
 
 /* The scale of every column, from a quarter of its coefficients of the higher harmonics. */
-static void scale_estimate(struct lattice_dims d, const uint16_t *span, const float *band, uint32_t rows, uint32_t columns,
-                           float *sample, double *few, float *scale)
+static void scale_estimate(const struct finest *f, float *scale)
 {
-	const uint32_t lanes = d.phi_d, even = (lanes + 1) / 2, low = even / 5; /* lanes low.. of either kind */
+	const uint32_t lanes = f->dims.phi_d, even = (lanes + 1) / 2, low = even / 5; /* lanes low.. of either kind */
 
-	for (uint32_t x = 0; x < columns; x++) {
+	for (uint32_t x = 0; x < f->columns; x++) {
 		size_t n = 0;
-		for (uint32_t y = 0; y < rows; y++) {
-			const float *row = band + ((size_t)y * d.theta_d + x) * lanes;
-			if (!detail_whole(d, span, y, x))
-				continue;
-			for (uint32_t q = (4 - y % 4) % 4; q < lanes; q += 4)
+		for (uint32_t y = 0; y < f->rows; y++) {
+			const float *row = detail_lanes(f, y, x);
+			for (uint32_t q = (4 - y % 4) % 4; row && q < lanes; q += 4)
 				if ((q < even ? q : q - even) >= low)
-					sample[n++] = fabsf(row[q]);
+					f->sample[n++] = fabsf(row[q]);
 		}
-		scale[x] = (float)(median(sample, n, few) / NORMAL_MEDIAN) + 1e-12f;
+		scale[x] = (float)(median(f->sample, n, f->few) / NORMAL_MEDIAN) + 1e-12f;
 	}
 }
 
 /* The factor of every lane, from every second of its coefficients; LANES lanes at a time, which stand side by side in memory. */
-static void factor_estimate(struct lattice_dims d, const uint16_t *span, const float *band, uint32_t rows, uint32_t columns,
-                            float *sample, double *few, struct noise *noise)
+static void factor_estimate(const struct finest *f, struct noise *noise)
 {
-	const size_t room = (size_t)rows * columns;
+	const size_t room = (size_t)f->rows * f->columns;
 
-	for (uint32_t q0 = 0; q0 < d.phi_d; q0 += LANES) {
-		const uint32_t count = d.phi_d - q0 < LANES ? d.phi_d - q0 : LANES;
+	for (uint32_t q0 = 0; q0 < f->dims.phi_d; q0 += LANES) {
+		const uint32_t count = f->dims.phi_d - q0 < LANES ? f->dims.phi_d - q0 : LANES;
 		size_t n[LANES] = {0};
-		for (uint32_t y = 0; y < rows; y++)
-			for (uint32_t x = 0; x < columns; x++) {
-				const float *row = band + ((size_t)y * d.theta_d + x) * d.phi_d + q0, per = 1 / noise->scale[x];
-				if (!detail_whole(d, span, y, x))
-					continue;
-				for (uint32_t q = (x + y + q0) % 2; q < count; q += 2)
-					sample[q * room + n[q]++] = fabsf(row[q]) * per;
+		for (uint32_t y = 0; y < f->rows; y++)
+			for (uint32_t x = 0; x < f->columns; x++) {
+				const float *row = detail_lanes(f, y, x), per = 1 / noise->scale[x];
+				for (uint32_t q = (x + y + q0) % 2; row && q < count; q += 2)
+					f->sample[q * room + n[q]++] = fabsf(row[q0 + q]) * per;
 			}
 		for (uint32_t q = 0; q < count; q++)
-			noise->factor[q0 + q] = (float)(median(sample + q * room, n[q], few) / NORMAL_MEDIAN);
+			noise->factor[q0 + q] = (float)(median(f->sample + q * room, n[q], f->few) / NORMAL_MEDIAN);
 	}
 }
 
 /* The level, and the streaks: by how much the first harmonic's noise is above it. */
-static void streak_estimate(struct lattice_dims d, const uint16_t *span, const float *band, uint32_t rows, uint32_t columns,
-                            float *sample, double *few, struct noise *noise)
+static void streak_estimate(const struct finest *f, struct noise *noise)
 {
-	float *scale = sample + (size_t)rows * columns;
+	float *first = f->sample, *scale = f->sample + (size_t)f->rows * f->columns;
 	size_t n = 0;
 
-	for (uint32_t y = 0; y < rows; y++)
-		for (uint32_t x = 0; x < columns; x++) {
-			if (!detail_whole(d, span, y, x))
+	for (uint32_t y = 0; y < f->rows; y++)
+		for (uint32_t x = 0; x < f->columns; x++) {
+			const float *row = detail_lanes(f, y, x);
+			if (!row)
 				continue;
-			sample[n] = fabsf(band[((size_t)y * d.theta_d + x) * d.phi_d]);
+			first[n] = fabsf(row[0]);
 			scale[n++] = noise->scale[x];
 		}
-	const double first = median(sample, n, few) / NORMAL_MEDIAN, white = median(scale, n, few);
-	noise->streak = (float)fmax(first * first - white * white, 0);
-	noise->level = (float)ranked(scale, n, n / 4 * 3, few);
+	const double all = median(first, n, f->few) / NORMAL_MEDIAN, white = median(scale, n, f->few);
+	noise->streak = (float)fmax(all * all - white * white, 0);
+	noise->level = (float)ranked(scale, n, n / 4 * 3, f->few);
 }
 
 static bp_status noise_estimate(struct lattice_dims d, const uint16_t *span, const float *c, struct noise *noise, bp_error *error)
 {
-	const uint32_t rows = d.theta_h / 2, columns = d.theta_d / 2;
-	const float *band = c + ((size_t)(d.theta_h - rows) * d.theta_d + d.theta_d - columns) * d.phi_d;
-	const size_t room = (size_t)rows * (d.phi_d > LANES * columns ? d.phi_d : LANES * columns);
-	float *sample = malloc(room * sizeof *sample), largest = 0;
-	double *few = malloc(room * sizeof *few);
+	struct finest f = {.dims = d, .span = span, .rows = d.theta_h / 2, .columns = d.theta_d / 2};
+	const size_t room = (size_t)f.rows * (d.phi_d > LANES * f.columns ? d.phi_d : LANES * f.columns);
+	float largest = 0;
 
-	if (!sample || !few) {
-		free(sample);
-		free(few);
-		return error_memory(error, room * sizeof *few);
-	}
-	scale_estimate(d, span, band, rows, columns, sample, few, noise->scale);
-	for (uint32_t x = 0; x < columns; x++)
+	f.band = c + ((size_t)(d.theta_h - f.rows) * d.theta_d + d.theta_d - f.columns) * d.phi_d;
+	f.few = malloc(room * (sizeof *f.few + sizeof *f.sample));
+	if (!f.few)
+		return error_memory(error, room * (sizeof *f.few + sizeof *f.sample));
+	f.sample = (float *)(f.few + room);
+	scale_estimate(&f, noise->scale);
+	for (uint32_t x = 0; x < f.columns; x++)
 		largest = noise->scale[x] > largest ? noise->scale[x] : largest;
 	noise->level = 0;
 	if (largest >= NOISE_LEAST) {
-		factor_estimate(d, span, band, rows, columns, sample, few, noise);
-		streak_estimate(d, span, band, rows, columns, sample, few, noise);
+		factor_estimate(&f, noise);
+		streak_estimate(&f, noise);
 		for (uint32_t q = 0; q < d.phi_d; q++)
 			noise->factor[q] *= noise->factor[q];
 	}
-	free(sample);
-	free(few);
+	free(f.few);
 	return BP_OK;
 }
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
 #include "spectral.h"
 #include "model/math/fill.h"
 #include "spectral_kernels.h"
@@ -20,69 +21,69 @@ enum {
 
 /* A piece of a row with invalid cells: a whole number of PIECEs long, but for the row's end. */
 struct run {
-	uint32_t at, count, filled; /* filled: where its marks begin */
+	uint32_t at, count, filled; /* filled: the piece where its marks begin */
 	int32_t neighbour[4];       /* how far away the same piece is in the rows around; mirrored at the table's ends */
 	int8_t first, last;         /* whether the row begins or ends here */
 };
 
 struct runs {
 	struct run *run;
-	float *filled; /* 1 where a cell is to be filled, 0 where not */
-	uint32_t count;
+	float (*filled)[PIECE]; /* 1 where a cell is to be filled, 0 where not */
+	uint32_t count, filled_count;
 };
 
-static struct run run_at(struct lattice_dims d, uint32_t row, uint32_t column, uint32_t marks)
+/* Adds a run that begins at `column` of a row, nothing in it yet. */
+static bool run_begin(struct lattice_dims d, uint32_t row, uint32_t column, struct runs *runs)
 {
 	const uint32_t i = row / d.theta_d, j = row % d.theta_d;
 	const int32_t p = (int32_t)d.phi_d, slice = (int32_t)(d.theta_d * d.phi_d);
-	return (struct run){
+	struct run *list = memory_grown(runs->run, runs->count, sizeof *list);
+
+	if (!list)
+		return false;
+	runs->run = list;
+	list[runs->count++] = (struct run){
 		.at = row * d.phi_d + column,
-		.filled = marks,
+		.filled = runs->filled_count,
 		.first = column == 0,
 		.neighbour = {j ? -p : p, j + 1 < d.theta_d ? p : -p, i ? -slice : slice, i + 1 < d.theta_h ? slice : -slice},
 	};
+	return true;
+}
+
+/* One piece more of the last run. */
+static bool run_extend(const uint8_t *valid, uint32_t length, bool last, struct runs *runs)
+{
+	float(*list)[PIECE] = memory_grown(runs->filled, runs->filled_count, sizeof *list), *marks;
+
+	if (!list)
+		return false;
+	runs->filled = list;
+	marks = list[runs->filled_count++];
+	for (uint32_t q = 0; q < length; q++)
+		marks[q] = valid[q] ? 0 : 1;
+	runs->run[runs->count - 1].count += length;
+	runs->run[runs->count - 1].last = last;
+	return true;
 }
 
 /* All of the table, in order; and present[row]: no cell is invalid. */
 static bp_status runs_make(struct lattice_dims d, const uint8_t *valid, uint8_t *present, struct runs *out, bp_error *error)
 {
-	const size_t p = d.phi_d, rows = (size_t)d.theta_h * d.theta_d;
-	uint32_t run_count = 0, mark_count = 0;
+	const uint32_t p = d.phi_d, rows = d.theta_h * d.theta_d;
 
-	for (int counting = 1; counting >= 0; counting--) {
-		uint32_t n = 0, marks = 0;
-		for (size_t r = 0; r < rows; r++) {
-			const uint8_t *row = valid + r * p;
-			present[r] = !memchr(row, 0, p);
-			for (size_t k = 0, before = 0; k < p && !present[r]; k += PIECE) {
-				const size_t length = k + PIECE < p ? PIECE : p - k;
-				if (!memchr(row + k, 0, length)) {
-					before = 0;
-					continue;
-				}
-				if (!before && !counting)
-					out->run[n] = run_at(d, (uint32_t)r, (uint32_t)k, marks);
-				n += !before;
-				before = 1;
-				for (size_t q = k; q < k + length && !counting; q++)
-					out->filled[marks + q - k] = row[q] ? 0 : 1;
-				if (!counting) {
-					out->run[n - 1].count += (uint32_t)length;
-					out->run[n - 1].last = k + length == p;
-				}
-				marks += (uint32_t)length;
-			}
+	for (uint32_t r = 0; r < rows; r++) {
+		const uint8_t *row = valid + (size_t)r * p;
+		bool before = false; /* the last piece is of a run */
+		present[r] = !memchr(row, 0, p);
+		for (uint32_t k = 0; k < p && !present[r]; k += PIECE) {
+			const uint32_t length = k + PIECE < p ? PIECE : p - k;
+			const bool here = memchr(row + k, 0, length) != NULL;
+			if ((here && !before && !run_begin(d, r, k, out)) || (here && !run_extend(row + k, length, k + length == p, out)))
+				return error_memory(error, out->filled_count * sizeof *out->filled);
+			before = here;
 		}
-		if (!counting)
-			break;
-		run_count = n;
-		mark_count = marks;
-		out->run = malloc((run_count + 1) * sizeof *out->run);
-		out->filled = malloc((mark_count + 1) * sizeof *out->filled);
-		if (!out->run || !out->filled)
-			return error_memory(error, (mark_count + 1) * sizeof *out->filled);
 	}
-	out->count = run_count;
 	return BP_OK;
 }
 
@@ -96,7 +97,7 @@ static void sweep(const struct runs *runs, int backwards, float *table)
 		float *x = table + run->at;
 		const float *const neighbour[4] = {x + run->neighbour[0], x + run->neighbour[1], x + run->neighbour[2],
 		                                   x + run->neighbour[3]};
-		kernels->spectral_smooth(x, runs->filled + run->filled, neighbour, run->count, run->first ? x[0] : x[-1],
+		kernels->spectral_smooth(x, runs->filled[run->filled], neighbour, run->count, run->first ? x[0] : x[-1],
 		                         run->last ? x[run->count - 1] : x[run->count]);
 	}
 }
@@ -142,7 +143,7 @@ bp_status spectral_fill(struct lattice_dims d, const uint8_t *valid, float *cons
 		for (int s = 0; s < SWEEPS; s++)
 			sweep(&runs, s % 2, table[c]);
 	}
-	fill_free(fill);
+	free(fill);
 	free(runs.run);
 	free(runs.filled);
 	free(present);

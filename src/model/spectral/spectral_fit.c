@@ -31,6 +31,13 @@ void spectral_free(struct spectral_model *model)
 	free(model);
 }
 
+static void turn(double *x, double *y, double cosine, double sine)
+{
+	const double from = *x;
+	*x = cosine * from - sine * *y;
+	*y = sine * from + cosine * *y;
+}
+
 /* Eigenvectors of a symmetric matrix by Jacobi rotations: columns of v. */
 static void eigenvectors(double a[3][3], double v[3][3])
 {
@@ -45,20 +52,11 @@ static void eigenvectors(double a[3][3], double v[3][3])
 				/* Golub and Van Loan, 8.5: tan, cos and sin without trigonometry. */
 				const double tau = (a[q][q] - a[p][p]) / (2 * a[p][q]);
 				const double t = (tau >= 0 ? 1 : -1) / (fabs(tau) + sqrt(1 + tau * tau)), c = 1 / sqrt(1 + t * t), s = t * c;
+				for (int i = 0; i < 3; i++)
+					turn(&a[i][p], &a[i][q], c, s);
 				for (int i = 0; i < 3; i++) {
-					const double x = a[i][p], y = a[i][q];
-					a[i][p] = c * x - s * y;
-					a[i][q] = s * x + c * y;
-				}
-				for (int i = 0; i < 3; i++) {
-					const double x = a[p][i], y = a[q][i];
-					a[p][i] = c * x - s * y;
-					a[q][i] = s * x + c * y;
-				}
-				for (int i = 0; i < 3; i++) {
-					const double x = v[i][p], y = v[i][q];
-					v[i][p] = c * x - s * y;
-					v[i][q] = s * x + c * y;
+					turn(&a[p][i], &a[q][i], c, s);
+					turn(&v[i][p], &v[i][q], c, s);
 				}
 			}
 }
@@ -107,14 +105,14 @@ static bp_status seen_cells(const struct lattice *lattice, struct lattice *out, 
 	*counted = malloc(cells);
 	if (!*counted)
 		return error_memory(error, cells);
-	bp_status status = lattice_seen(lattice->dims, *counted, error);
-	for (size_t n = 0; !status && n < cells; n++)
+	lattice_seen(lattice->dims, *counted);
+	for (size_t n = 0; n < cells; n++)
 		count += (*counted)[n] &= lattice->valid[n];
 	if (count) {
 		out->valid = *counted;
 		out->valid_count = count;
 	}
-	return status;
+	return BP_OK;
 }
 
 /* Logarithms in the making: of the first `done` cells of every table, with their sums. */
@@ -228,7 +226,7 @@ static bp_status weights_divide(struct spectral_model *fitted, bp_error *error)
 	stage_enter(STAGE_CLEAN);
 	for (int f = 0; f < 3; f++)
 		spectral_factors_divide(fitted->dims, &factors, fitted->coefficient[f]);
-	spectral_factors_free(&factors);
+	free(factors.row);
 	return BP_OK;
 }
 
@@ -269,7 +267,7 @@ bp_status spectral_fit(const struct lattice *lattice, const struct fit_options *
 		spectral_survey_order(&sample, order);
 		fitted->unit = spectral_survey_unit(&sample, lattice);
 	}
-	spectral_survey_free(&sample);
+	free(sample.x);
 	if (!status)
 		status = watch_tell(options->watch, 0.1, error);
 	if (!status && !bound) {

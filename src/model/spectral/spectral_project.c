@@ -15,6 +15,31 @@
 #include "model/math/fast_math.h"
 #include "spectrum_rows.h"
 
+/* ---- which coefficients a record has room for ---- */
+
+enum {
+	BIN_SHIFT = 19, /* of a float's bits: 16 bins to the octave */
+	BINS = 1 << (31 - BIN_SHIFT),
+};
+static const double BITS_EACH = 4.3; /* of a record, for each coefficient that is not 0: 3.8 to 4.9 on surrogates */
+
+double spectral_places(double budget_bytes) { return budget_bytes * 8 / BITS_EACH; }
+
+float spectral_size_of_rank(const float *coefficient, size_t rows, size_t lanes, size_t every, double count)
+{
+	uint32_t bins[BINS] = {0}, bin = BINS;
+	double above = 0;
+
+	for (size_t r = every / 2; r < rows; r += every)
+		for (size_t k = r * lanes; k < (r + 1) * lanes; k++)
+			bins[(bits_of_float(coefficient[k]) & 0x7fffffff) >> BIN_SHIFT]++;
+	while (bin > 1 && above + (double)every * bins[bin - 1] <= count)
+		above += (double)every * bins[--bin];
+	return float_of_bits(bin << BIN_SHIFT < 0x7f800000 ? bin << BIN_SHIFT : 0x7f7fffff);
+}
+
+/* ---- projections ---- */
+
 struct projection {
 	struct lattice_dims dims;
 	struct spectrum_inverse *inverse;
@@ -41,21 +66,19 @@ static bp_status projection_create(struct lattice_dims d, const struct spectral_
 		return error_memory(error, cells * sizeof(float));
 	bp_status status = spectral_factors_create(d, weights, &out->factors, error);
 	if (!status)
-		status = spectrum_inverse_create(d, &out->inverse, error);
-	if (!status)
-		status = spectral_weights_apply(weights, out->inverse, error);
+		status = spectral_inverse_create(d, weights, &out->inverse, error);
 	return status ? status : spectrum_rows_create(out->inverse, limit, d.phi_d, false, &out->rows, error);
 }
 
 static void projection_free(struct projection *p)
 {
-	spectral_factors_free(&p->factors);
+	free(p->factors.row);
 	free(p->spectrum);
 	free(p->cells);
 	spectrum_rows_free(p->rows);
 	free(p->term);
 	free(p->start);
-	spectrum_inverse_free(p->inverse);
+	free(p->inverse);
 }
 
 /* One step on one channel's table. */

@@ -23,8 +23,6 @@ static size_t common_divisor(size_t a, size_t b)
 	return a;
 }
 
-void spectral_survey_free(struct spectral_survey *sample) { free(sample->x); }
-
 bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_survey *out, bp_error *error)
 {
 	const size_t cells = lattice_cells(lattice->dims), p = lattice->dims.phi_d;

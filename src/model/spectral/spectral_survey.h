@@ -7,13 +7,12 @@
 #include "model/robust/robust.h"
 
 struct spectral_survey {
-	double *x;    /* the achromatic value; owns the block */
+	double *x;    /* the achromatic value; owns the block: freed with free() */
 	double *y[3]; /* the channels, one behind the other, n each */
 	size_t n;     /* 65,536 at least, where there are as many */
 };
 
 bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_survey *out, bp_error *error);
-void spectral_survey_free(struct spectral_survey *sample); /* an empty one is allowed */
 
 /* The paper's regression of each channel on the achromatic value. */
 bp_status spectral_survey_colour(const struct spectral_survey *sample, struct colour_fit colour[3], bp_error *error);

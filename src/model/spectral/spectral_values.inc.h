@@ -183,25 +183,24 @@ static void KERNEL(spectral_rotate)(float *const x[3], size_t n, const float m[3
 static void KERNEL(spectral_smooth)(float *x, const float *filled, const float *const neighbour[4], size_t n, float before,
                                     float after)
 {
-	typedef KERNEL(floats8) vector;
 	const float *a = neighbour[0], *b = neighbour[1], *c = neighbour[2], *d = neighbour[3];
 	const size_t whole = n / 8 * 8;
 
 	if (whole) {
 		/* What is left of the next vector is read before this one is written. */
-		vector here = FLOATS8_OF(x), left = __builtin_shufflevector((vector){before}, here, 0, 8, 9, 10, 11, 12, 13, 14);
+		floats8 here = FLOATS8_LOAD(x), left = __builtin_shufflevector((floats8){before}, here, 0, 8, 9, 10, 11, 12, 13, 14);
 		for (size_t k = 0; k < whole; k += 8) {
-			const vector right =
-				k + 8 < n ? FLOATS8_OF(x + k + 1) : __builtin_shufflevector(here, (vector){after}, 1, 2, 3, 4, 5, 6, 7, 8);
-			vector next = here, next_left = left;
+			const floats8 right =
+				k + 8 < n ? FLOATS8_LOAD(x + k + 1) : __builtin_shufflevector(here, (floats8){after}, 1, 2, 3, 4, 5, 6, 7, 8);
+			floats8 next = here, next_left = left;
 			if (k + 8 < whole) {
-				next = FLOATS8_OF(x + k + 8);
-				next_left = FLOATS8_OF(x + k + 7);
+				next = FLOATS8_LOAD(x + k + 8);
+				next_left = FLOATS8_LOAD(x + k + 7);
 			}
 			before = x[k + 7];
-			const vector sum =
-				4 * (left + right) + ((FLOATS8_OF(a + k) + FLOATS8_OF(b + k)) + (FLOATS8_OF(c + k) + FLOATS8_OF(d + k)));
-			FLOATS8_AT(x + k) = here + FLOATS8_OF(filled + k) * (sum * (1.0f / 12) - here);
+			const floats8 sum =
+				4 * (left + right) + ((FLOATS8_LOAD(a + k) + FLOATS8_LOAD(b + k)) + (FLOATS8_LOAD(c + k) + FLOATS8_LOAD(d + k)));
+			FLOATS8_STORE(x + k, here + FLOATS8_LOAD(filled + k) * (sum * (1.0f / 12) - here));
 			here = next;
 			left = next_left;
 		}

@@ -80,23 +80,21 @@ bp_status spectral_factors_create(struct lattice_dims d, const struct spectral_w
 	return BP_OK;
 }
 
-void spectral_factors_free(struct spectral_factors *factors) { free(factors->row); /* one block */ }
-
-bp_status spectral_weights_apply(const struct spectral_weights *weights, struct spectrum_inverse *inverse, bp_error *error)
+bp_status spectral_inverse_create(struct lattice_dims d, const struct spectral_weights *weights, struct spectrum_inverse **out,
+                                  bp_error *error)
 {
-	const struct lattice_dims d = inverse->dims;
 	const size_t rows = (size_t)d.theta_h * d.theta_d;
 	struct spectral_factors factors;
-	const bp_status status = spectral_factors_create(d, weights, &factors, error);
+	bp_status status = spectral_factors_create(d, weights, &factors, error);
 
-	if (status)
-		return status;
-	for (size_t r = 0; r < rows; r++)
-		inverse->gain[r] *= factors.row[r];
-	for (uint32_t m = 0; m < d.phi_d; m++)
-		inverse->harmonic[m] *= factors.harmonic[m];
-	spectral_factors_free(&factors);
-	return BP_OK;
+	if (!status)
+		status = spectrum_inverse_create(d, out, error);
+	for (size_t r = 0; r < rows && !status; r++)
+		(*out)->gain[r] *= factors.row[r];
+	for (uint32_t m = 0; m < d.phi_d && !status; m++)
+		(*out)->harmonic[m] *= factors.harmonic[m];
+	free(factors.row);
+	return status;
 }
 
 void spectral_factors_divide(struct lattice_dims d, const struct spectral_factors *factors, float *spectrum)

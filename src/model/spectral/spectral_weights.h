@@ -50,15 +50,15 @@ void spectral_weights_ease(struct spectral_weights *weights, float octaves);
 
 /* The factors of a spectrum (spectrum.h). */
 struct spectral_factors {
-	float *row;      /* [theta_h theta_d] */
+	float *row;      /* [theta_h theta_d]; owns the block: freed with free() */
 	float *harmonic; /* [phi_d] */
 };
 bp_status spectral_factors_create(struct lattice_dims dims, const struct spectral_weights *weights, struct spectral_factors *out,
                                   bp_error *error);
-void spectral_factors_free(struct spectral_factors *factors); /* a zeroed struct is allowed */
 
-/* Takes the factors into the gains of an inverse transform. */
-bp_status spectral_weights_apply(const struct spectral_weights *weights, struct spectrum_inverse *inverse, bp_error *error);
+/* An inverse transform with the factors in its gains. */
+bp_status spectral_inverse_create(struct lattice_dims dims, const struct spectral_weights *weights, struct spectrum_inverse **out,
+                                  bp_error *error);
 
 /* Divides the spectrum by the factors. */
 void spectral_factors_divide(struct lattice_dims dims, const struct spectral_factors *factors, float *spectrum);

@@ -11,9 +11,9 @@ struct spectrum {
 	struct lattice_dims dims;
 	uint32_t levels;
 	struct cosines *cosines;
-	float *scratch; /* for the wavelets */
-	uint16_t *span; /* of every row */
 	struct span_cosines *cut;
+	uint16_t *span;  /* of every row */
+	float scratch[]; /* for the wavelets; behind it the spans */
 };
 
 uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
@@ -29,22 +29,17 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
 bp_status spectrum_create(struct lattice_dims dims, float limit, struct spectrum **out, bp_error *error)
 {
 	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d, rows = (size_t)dims.theta_h * dims.theta_d;
-	struct spectrum *t = calloc(1, sizeof *t);
+	const size_t bytes = sizeof(struct spectrum) + 12 * longest * sizeof(float) + rows * sizeof(uint16_t);
+	struct spectrum *t = malloc(bytes);
 
 	if (!t)
-		return error_memory(error, sizeof *t);
-	t->dims = dims;
-	t->levels = spectrum_levels(dims.theta_h, dims.theta_d);
-	t->span = malloc(rows * sizeof *t->span);
-	t->scratch = malloc(12 * longest * sizeof(float));
-	bp_status status =
-		t->scratch ? cosines_create(dims.phi_d, &t->cosines, error) : error_memory(error, 12 * longest * sizeof(float));
-	if (!status && !t->span)
-		status = error_memory(error, rows * sizeof *t->span);
-	if (!status) {
-		spans_find(dims, limit, t->span);
+		return error_memory(error, bytes);
+	*t = (struct spectrum){.dims = dims, .levels = spectrum_levels(dims.theta_h, dims.theta_d)};
+	t->span = (uint16_t *)(t->scratch + 12 * longest);
+	spans_find(dims, limit, t->span);
+	bp_status status = cosines_create(dims.phi_d, &t->cosines, error);
+	if (!status)
 		status = span_cosines_create(dims.phi_d, t->span, rows, dims.phi_d, false, &t->cut, error);
-	}
 	if (status)
 		spectrum_free(t);
 	else
@@ -58,8 +53,6 @@ void spectrum_free(struct spectrum *t)
 		return;
 	cosines_free(t->cosines);
 	span_cosines_free(t->cut);
-	free(t->span);
-	free(t->scratch);
 	free(t);
 }
 

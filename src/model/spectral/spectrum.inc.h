@@ -3,11 +3,6 @@
 
 #include "spectrum.h"
 
-typedef float KERNEL(floats8) __attribute__((vector_size(32)));
-typedef float KERNEL(floats8_unaligned) __attribute__((vector_size(32), aligned(4), may_alias));
-#define FLOATS8_AT(p) (*(KERNEL(floats8_unaligned) *)(p))
-#define FLOATS8_OF(p) ((KERNEL(floats8))(*(const KERNEL(floats8_unaligned) *)(p)))
-
 /*
  * `rows` rows times 8 * vectors columns, both constants where this is inlined, and their product at most 8: the sums stay in
  * registers. The sum over k runs in ascending order.
@@ -16,15 +11,15 @@ static inline __attribute__((always_inline)) void KERNEL(product_part)(const flo
                                                                        size_t count, const float *matrix, size_t columns,
                                                                        size_t vectors, float *y, size_t out_stride)
 {
-	KERNEL(floats8) sum[8] = {{0}};
+	floats8 sum[8] = {{0}};
 
 	for (size_t k = 0; k < count; k++, matrix += columns)
 		for (size_t v = 0; v < vectors; v++)
 			for (size_t q = 0; q < rows; q++)
-				sum[q * vectors + v] += x[q * in_stride + k] * FLOATS8_OF(matrix + 8 * v);
+				sum[q * vectors + v] += x[q * in_stride + k] * FLOATS8_LOAD(matrix + 8 * v);
 	for (size_t q = 0; q < rows; q++)
 		for (size_t v = 0; v < vectors; v++)
-			FLOATS8_AT(y + q * out_stride + 8 * v) = sum[q * vectors + v];
+			FLOATS8_STORE(y + q * out_stride + 8 * v, sum[q * vectors + v]);
 }
 
 /* Four rows times 16 columns at once; of a row that is left, 48 columns, then 16. */
@@ -49,9 +44,9 @@ static void KERNEL(span_unfold)(const float *sum, const float *difference, size_
 	size_t k = 0;
 
 	for (; k + 8 <= half; k += 8) {
-		const KERNEL(floats8) s = FLOATS8_OF(sum + k), d = FLOATS8_OF(difference + k), back = s - d;
-		FLOATS8_AT(out + k) = s + d;
-		FLOATS8_AT(out + n - 8 - k) = __builtin_shufflevector(back, back, 7, 6, 5, 4, 3, 2, 1, 0);
+		const floats8 s = FLOATS8_LOAD(sum + k), d = FLOATS8_LOAD(difference + k), back = s - d;
+		FLOATS8_STORE(out + k, s + d);
+		FLOATS8_STORE(out + n - 8 - k, __builtin_shufflevector(back, back, 7, 6, 5, 4, 3, 2, 1, 0));
 	}
 	for (; k < half; k++) {
 		out[k] = sum[k] + difference[k];
@@ -73,26 +68,25 @@ static void KERNEL(span_unfold)(const float *sum, const float *difference, size_
  */
 static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(float *x, size_t n, size_t stride, float *scratch)
 {
-	typedef KERNEL(floats8) vector;
 	const size_t low = (n + 1) / 2, high = n / 2;
-	vector even = FLOATS8_OF(x), odd_a = {0}, even_b = {0},
-		   odd_c = {0}; /* the last place after no step, the first, the second, the third */
+	floats8 even = FLOATS8_LOAD(x), odd_a = {0}, even_b = {0},
+			odd_c = {0}; /* the last place after no step, the first, the second, the third */
 
 	for (size_t i = 0; i < low; i++) {
 		const float *here = x + 2 * i * stride;
-		const vector next = i + 1 < low ? FLOATS8_OF(here + 2 * stride) : even;
-		vector odd = odd_a;
+		const floats8 next = i + 1 < low ? FLOATS8_LOAD(here + 2 * stride) : even;
+		floats8 odd = odd_a;
 		__builtin_prefetch(here + 16, 1);
 		if (2 * i + 1 < n) {
 			__builtin_prefetch(here + stride + 16, 1);
-			odd = FLOATS8_OF(here + stride) + CDF97_A * (even + next);
+			odd = FLOATS8_LOAD(here + stride) + CDF97_A * (even + next);
 		}
-		const vector b = even + CDF97_B * ((i ? odd_a : odd) + odd);
+		const floats8 b = even + CDF97_B * ((i ? odd_a : odd) + odd);
 		if (i) {
-			const vector c = odd_a + CDF97_C * (even_b + b);
-			const vector d = even_b + CDF97_D * ((i > 1 ? odd_c : c) + c);
-			FLOATS8_AT(x + (i - 1) * stride) = d * SPECTRUM_GAIN;
-			FLOATS8_AT(scratch + 8 * (i - 1)) = c * (1 / SPECTRUM_GAIN);
+			const floats8 c = odd_a + CDF97_C * (even_b + b);
+			const floats8 d = even_b + CDF97_D * ((i > 1 ? odd_c : c) + c);
+			FLOATS8_STORE(x + (i - 1) * stride, d * SPECTRUM_GAIN);
+			FLOATS8_STORE(scratch + 8 * (i - 1), c * (1 / SPECTRUM_GAIN));
 			odd_c = c;
 		}
 		odd_a = odd;
@@ -100,14 +94,14 @@ static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(flo
 		even = next;
 	}
 	if (high == low) {
-		const vector c = odd_a + CDF97_C * (even_b + even_b);
-		FLOATS8_AT(scratch + 8 * (high - 1)) = c * (1 / SPECTRUM_GAIN);
-		FLOATS8_AT(x + (low - 1) * stride) = (even_b + CDF97_D * ((low > 1 ? odd_c : c) + c)) * SPECTRUM_GAIN;
+		const floats8 c = odd_a + CDF97_C * (even_b + even_b);
+		FLOATS8_STORE(scratch + 8 * (high - 1), c * (1 / SPECTRUM_GAIN));
+		FLOATS8_STORE(x + (low - 1) * stride, (even_b + CDF97_D * ((low > 1 ? odd_c : c) + c)) * SPECTRUM_GAIN);
 	} else {
-		FLOATS8_AT(x + (low - 1) * stride) = (even_b + CDF97_D * (odd_c + odd_c)) * SPECTRUM_GAIN;
+		FLOATS8_STORE(x + (low - 1) * stride, (even_b + CDF97_D * (odd_c + odd_c)) * SPECTRUM_GAIN);
 	}
 	for (size_t i = 0; i < high; i++)
-		FLOATS8_AT(x + (low + i) * stride) = FLOATS8_OF(scratch + 8 * i);
+		FLOATS8_STORE(x + (low + i) * stride, FLOATS8_LOAD(scratch + 8 * i));
 }
 
 static void KERNEL(cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch)

@@ -39,32 +39,18 @@ static void places_fill(struct spectrum_inverse *t)
 bp_status spectrum_inverse_create(struct lattice_dims d, struct spectrum_inverse **out, bp_error *error)
 {
 	const size_t rows = (size_t)d.theta_h * d.theta_d;
-	struct spectrum_inverse *t = calloc(1, sizeof *t);
+	const size_t bytes = sizeof(struct spectrum_inverse) + rows * (sizeof(uint32_t) + sizeof(float)) + d.phi_d * sizeof(float);
+	struct spectrum_inverse *t = malloc(bytes);
 
 	if (!t)
-		return error_memory(error, sizeof *t);
+		return error_memory(error, bytes);
 	t->dims = d;
 	t->levels = spectrum_levels(d.theta_h, d.theta_d);
-	t->place = malloc(rows * sizeof *t->place);
-	t->gain = malloc(rows * sizeof *t->gain);
-	t->harmonic = malloc(d.phi_d * sizeof *t->harmonic);
-	if (!t->place || !t->gain || !t->harmonic) {
-		spectrum_inverse_free(t);
-		return error_memory(error, rows * sizeof *t->place);
-	}
+	t->gain = (float *)(t->place + rows);
+	t->harmonic = t->gain + rows;
 	places_fill(t);
 	for (uint32_t m = 0; m < d.phi_d; m++)
 		t->harmonic[m] = 1;
 	*out = t;
 	return BP_OK;
-}
-
-void spectrum_inverse_free(struct spectrum_inverse *t)
-{
-	if (!t)
-		return;
-	free(t->place);
-	free(t->gain);
-	free(t->harmonic);
-	free(t);
 }

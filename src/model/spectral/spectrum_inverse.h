@@ -21,13 +21,13 @@ struct spectrum_term {
 struct spectrum_inverse {
 	struct lattice_dims dims;
 	uint32_t levels;
-	uint32_t *place; /* of the spectrum's row theta_h * D + theta_d */
-	float *gain;
-	float *harmonic; /* a gain of each, besides: 1 */
+	float *gain;      /* of the spectrum's row theta_h * D + theta_d */
+	float *harmonic;  /* a gain of each, besides: 1 */
+	uint32_t place[]; /* of the row; behind it the arrays above */
 };
 
+/* *out is freed with free(). */
 bp_status spectrum_inverse_create(struct lattice_dims dims, struct spectrum_inverse **out, bp_error *error);
-void spectrum_inverse_free(struct spectrum_inverse *inverse); /* NULL is allowed */
 
 /* The coefficient `value` in row theta_h * D + theta_d of the spectrum, of a harmonic. */
 static inline struct spectrum_term spectrum_term_make(const struct spectrum_inverse *inverse, uint32_t row, uint32_t harmonic,

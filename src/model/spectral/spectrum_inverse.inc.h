@@ -7,21 +7,20 @@
  */
 static inline __attribute__((always_inline)) void KERNEL(cdf97_line)(float *x, size_t n, size_t stride, int half)
 {
-	typedef KERNEL(floats8) vector;
 	/* After the first step: even1; the second: odd2; the third: even3, all of the last place that has it. */
-	vector odd = FLOATS8_OF(x + stride), even1 = FLOATS8_OF(x) - CDF97_D * (odd + odd);
-	vector odd2 = odd, even3 = even1;
+	floats8 odd = FLOATS8_LOAD(x + stride), even1 = FLOATS8_LOAD(x) - CDF97_D * (odd + odd);
+	floats8 odd2 = odd, even3 = even1;
 	size_t e;
 
 	for (e = 2; e < n; e += 2) {
 		float *here = x + e * stride;
-		const vector next = e + 1 < n ? FLOATS8_OF(here + stride) : odd;
-		const vector even = FLOATS8_OF(here) - CDF97_D * (odd + next);
-		const vector between = odd - CDF97_C * (even1 + even);
-		const vector done = even1 - CDF97_B * ((e == 2 ? between : odd2) + between);
+		const floats8 next = e + 1 < n ? FLOATS8_LOAD(here + stride) : odd;
+		const floats8 even = FLOATS8_LOAD(here) - CDF97_D * (odd + next);
+		const floats8 between = odd - CDF97_C * (even1 + even);
+		const floats8 done = even1 - CDF97_B * ((e == 2 ? between : odd2) + between);
 		if (!half && e > 2)
-			FLOATS8_AT(here - 3 * stride) = odd2 - CDF97_A * (even3 + done);
-		FLOATS8_AT(here - 2 * stride) = done;
+			FLOATS8_STORE(here - 3 * stride, odd2 - CDF97_A * (even3 + done));
+		FLOATS8_STORE(here - 2 * stride, done);
 		odd = next;
 		even1 = even;
 		odd2 = between;
@@ -29,18 +28,18 @@ static inline __attribute__((always_inline)) void KERNEL(cdf97_line)(float *x, s
 	}
 	float *last = x + (e - 2) * stride; /* the last even place */
 	if (n % 2 == 0) {
-		const vector between = odd - CDF97_C * (even1 + even1);
-		const vector done = even1 - CDF97_B * (odd2 + between);
-		FLOATS8_AT(last) = done;
+		const floats8 between = odd - CDF97_C * (even1 + even1);
+		const floats8 done = even1 - CDF97_B * (odd2 + between);
+		FLOATS8_STORE(last, done);
 		if (!half) {
-			FLOATS8_AT(last - stride) = odd2 - CDF97_A * (even3 + done);
-			FLOATS8_AT(last + stride) = between - CDF97_A * (done + done);
+			FLOATS8_STORE(last - stride, odd2 - CDF97_A * (even3 + done));
+			FLOATS8_STORE(last + stride, between - CDF97_A * (done + done));
 		}
 	} else {
-		const vector done = even1 - CDF97_B * (odd2 + odd2);
-		FLOATS8_AT(last) = done;
+		const floats8 done = even1 - CDF97_B * (odd2 + odd2);
+		FLOATS8_STORE(last, done);
 		if (!half)
-			FLOATS8_AT(last - stride) = odd2 - CDF97_A * (even3 + done);
+			FLOATS8_STORE(last - stride, odd2 - CDF97_A * (even3 + done));
 	}
 }
 

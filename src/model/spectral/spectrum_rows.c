@@ -26,12 +26,12 @@ struct spectrum_rows {
 	const struct spectrum_inverse *inverse;
 	bool half;
 	uint32_t high, wide; /* rows that are wanted: along theta_h, along theta_d */
-	uint16_t *span;      /* of the rows that are wanted */
 	struct span_cosines *cosines;
 	struct lanes field[SPECTRUM_FIELDS];
-	float *plane; /* half: a whole one, before its wanted rows are taken */
-	float *lanes; /* of a few rows, side by side */
-	float *line;  /* half: whole rows, before every second cell is taken */
+	float *plane;   /* half: a whole one, before its wanted rows are taken */
+	float *line;    /* half: whole rows, before every second cell is taken */
+	uint16_t *span; /* of the rows that are wanted */
+	float lanes[];  /* of a few rows, side by side; behind them the two arrays above */
 };
 
 /* Where row r of a half table is among all. */
@@ -44,21 +44,25 @@ bp_status spectrum_rows_create(const struct spectrum_inverse *inverse, float lim
                                struct spectrum_rows **out, bp_error *error)
 {
 	const struct lattice_dims d = inverse->dims;
-	const size_t rows = (size_t)d.theta_h * d.theta_d, lanes_bytes = SPAN_ROWS * (d.phi_d + 4 * STEP) * sizeof(float);
-	struct spectrum_rows *t = calloc(1, sizeof *t);
+	const size_t rows = (size_t)d.theta_h * d.theta_d, lanes = SPAN_ROWS * (d.phi_d + 4 * STEP),
+				 line = SPAN_ROWS * (size_t)d.phi_d;
+	const size_t bytes = sizeof(struct spectrum_rows) + (lanes + line) * sizeof(float) + rows * sizeof(uint16_t);
+	const size_t plane_bytes = half ? rows * SPECTRUM_BLOCK * sizeof(float) : 0;
+	struct spectrum_rows *t = malloc(bytes);
 
 	if (!t)
-		return error_memory(error, sizeof *t);
-	t->dims = d;
-	t->inverse = inverse;
-	t->half = half;
-	t->high = half ? d.theta_h / 2 : d.theta_h;
-	t->wide = half ? d.theta_d / 2 : d.theta_d;
-	t->span = malloc(rows * sizeof *t->span);
-	t->plane = half ? memory_alloc(rows * SPECTRUM_BLOCK * sizeof(float)) : NULL;
-	t->lanes = malloc(lanes_bytes);
-	t->line = malloc(SPAN_ROWS * (size_t)d.phi_d * sizeof(float));
-	bp_status status = t->span && (t->plane || !half) && t->lanes && t->line ? BP_OK : error_memory(error, lanes_bytes);
+		return error_memory(error, bytes);
+	*t = (struct spectrum_rows){
+		.dims = d,
+		.inverse = inverse,
+		.half = half,
+		.high = half ? d.theta_h / 2 : d.theta_h,
+		.wide = half ? d.theta_d / 2 : d.theta_d,
+		.plane = half ? memory_alloc(plane_bytes) : NULL,
+	};
+	t->line = t->lanes + lanes;
+	t->span = (uint16_t *)(t->line + line);
+	bp_status status = t->plane || !half ? BP_OK : error_memory(error, plane_bytes);
 	if (!status) {
 		spans_find(d, limit, t->span);
 		for (uint32_t r = 0; r < t->high * t->wide && half; r++) /* never before where it is read */
@@ -79,10 +83,7 @@ void spectrum_rows_free(struct spectrum_rows *t)
 	for (int f = 0; f < SPECTRUM_FIELDS; f++)
 		free(t->field[f].value);
 	span_cosines_free(t->cosines);
-	free(t->span);
 	free(t->plane);
-	free(t->lanes);
-	free(t->line);
 	free(t);
 }
 

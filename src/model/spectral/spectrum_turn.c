@@ -37,7 +37,7 @@ void spectrum_turn_free(struct spectrum_turn *t)
 {
 	if (!t)
 		return;
-	spectrum_inverse_free(t->inverse);
+	free(t->inverse);
 	free(t->plane);
 	free(t);
 }

@@ -5,8 +5,32 @@
 #include <string.h>
 
 #include "error.h"
-#include "compact_row.h"
 #include "model/math/kernels.h"
+
+void compact_hats_make(uint32_t width, uint32_t half, struct compact_hats *out)
+{
+	float system[5] = {0};
+	memset(out, 0, sizeof *out);
+	out->width = width;
+	out->half = half;
+	for (uint32_t k = 0; k <= width; k++) {
+		uint32_t m = k < half ? 0 : 1;
+		float t = (float)(k - m * half) / (float)half;
+		out->h[m][k] = 1 - t;
+		out->h[m + 1][k] = t;
+	}
+	for (int n = 0; n < 5; n++)
+		for (uint32_t k = 0; k <= width; k++) {
+			out->product[n][k] = out->h[n / 2][k] * out->h[(n + 1) / 2][k];
+			system[n] += out->product[n][k];
+		}
+	for (uint32_t k = 0; k <= width; k++) {
+		float x[3] = {out->h[0][k], out->h[1][k], out->h[2][k]};
+		compact_solve(system, x);
+		for (int a = 0; a < 3; a++)
+			out->fit[a][k] = x[a];
+	}
+}
 
 /* Shares of cells well below this count little: 1e-3/sr, as a share of the table's largest value, within reason. */
 static float dark_of(double largest)
@@ -26,27 +50,6 @@ static uint32_t share_code(float share, float base, float per)
 static uint8_t *row_at(const struct table *t, size_t i, size_t j)
 {
 	return t->store + i * t->slice + j / 2 * t->row + j % 2 * t->block_bytes;
-}
-
-/* Where what is looked up stands: what depends on phi_d, and on theta_d. */
-static void places_fill(struct table *t)
-{
-	for (uint32_t k = 0; k < t->dims.phi_d; k++) {
-		uint32_t in = k % t->width, later = in >= t->half;
-		t->places[k + 1] = (struct table_place){
-			.offset = (uint16_t)(k / t->width * 2 * t->block_bytes),
-			.residual = (uint8_t)(COMPACT_RESIDUALS + in),
-			.share = (uint8_t)(COMPACT_SHARES + 3 * later),
-			.place = (float)(int32_t)(in - later * t->half) * t->half_reciprocal,
-		};
-	}
-	for (uint32_t j = 0; j < t->dims.theta_d; j++)
-		t->rows[j + 1].offset = t->row * (j / 2) + j % 2 * t->block_bytes;
-	for (uint32_t i = 0; i < t->dims.theta_h; i++)
-		t->slices[i + 1].offset = t->slice * i;
-	table_places_close(t->places, t->dims.phi_d);
-	table_pairs_close(t->rows, t->dims.theta_d);
-	table_pairs_close(t->slices, t->dims.theta_h);
 }
 
 /* The shares' codes in 12 bits each, once their range over the whole table is known: low and high of R's and of B's. */
@@ -96,7 +99,6 @@ bp_status compact_fill(struct table *t, const struct expansion *e, float largest
 	float *const knots[2] = {scratch + 4 * line, scratch + 4 * line + rows * kept};
 	memset(scratch, 0, 4 * line * sizeof *scratch);
 	memset(t->store, 0, cells_bytes);
-	places_fill(t);
 
 	struct compact_rows_plan plan = {
 		.period = period,

@@ -1,5 +1,5 @@
-/* compact_row.inc.h: rows of values become blocks of the compact form. See compact.h and compact_row.h. */
-#include "compact_row.h"
+/* compact_row.inc.h: rows of values become blocks of the compact form. See compact.h. */
+#include "compact.h"
 #include "model/math/fast_math.h"
 
 static inline f32x4 KERNEL(load4)(const float *p)

@@ -34,19 +34,7 @@ static bp_status expanded_alloc(struct table *t, bp_error *error)
 	const struct lattice_dims d = t->dims;
 	t->row = (d.phi_d + 1) * (uint32_t)t->channels;
 	t->slice = t->row * d.theta_d;
-	bp_status status = table_store_alloc(t, (size_t)t->slice * d.theta_h * sizeof(uint16_t), error);
-	if (status)
-		return status;
-	for (uint32_t i = 0; i < d.theta_h; i++)
-		t->slices[i + 1].offset = t->slice * i;
-	for (uint32_t j = 0; j < d.theta_d; j++)
-		t->rows[j + 1].offset = t->row * j;
-	for (uint32_t k = 0; k < d.phi_d; k++)
-		t->places[k + 1] = (struct table_place){.offset = (uint16_t)(k * (uint32_t)t->channels)};
-	table_pairs_close(t->slices, d.theta_h);
-	table_pairs_close(t->rows, d.theta_d);
-	table_places_close(t->places, d.phi_d);
-	return BP_OK;
+	return table_store_alloc(t, (size_t)t->slice * d.theta_h * sizeof(uint16_t), error);
 }
 
 /* The cell behind each row's last: its first again. */

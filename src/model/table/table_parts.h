@@ -62,12 +62,11 @@ enum { TABLE_SLACK_BYTES = 32 };
 /* [0]: one channel, [1]: RGB. */
 extern const struct table_kernels table_expanded_plain[2], table_expanded_avx2[2], table_compact_plain[2], table_compact_avx2[2];
 
-/* The store with so many bytes of cells, and slices, rows and places in it; nothing is set but the slack. */
+/*
+ * The store with so many bytes of cells, which are not set, and slices, rows and places, which are: by `row`, `slice` and what
+ * else the form has.
+ */
 bp_status table_store_alloc(struct table *table, size_t cells_bytes, bp_error *error);
-/* pairs[n + 1].offset of values n = 0 to extent - 1 have been set: sets the rest. */
-void table_pairs_close(struct table_pair *pairs, uint32_t extent);
-/* places[k + 1] of values k = 0 to extent - 1 have been set: sets the rest. */
-void table_places_close(struct table_place *places, uint32_t extent);
 
 /* What brings values up to `largest` to [0, 1]; 0 for a table that is as good as all zero. */
 static inline float table_factor(float largest) { return largest >= 0x1p-125f ? 1 / largest : 0; }

@@ -3,7 +3,6 @@
 #include "archive/writer.h"
 #include "error.h"
 #include "build_inputs.h"
-#include "build_work.h"
 #include "memory.h"
 #include "outcomes.h"
 #include "tool/command.h"
@@ -120,7 +119,7 @@ static bp_status output_look(const struct build *build, bool found, bp_error *er
 	for (size_t n = 0; n < sources->item_count && !status; n++)
 		status = output_check_input(options->output, sources->items[n].path, error);
 	for (size_t n = 0; n < sources->stream_count && !status; n++)
-		status = output_check_input(options->output, sources->streams[n], error);
+		status = output_check_input(options->output, sources->streams[n].path, error);
 	return status;
 }
 

@@ -114,16 +114,16 @@ static bool member_find(struct build *build, struct source_item *member)
 		if (!build->stream) {
 			if (build->stream_next == build->sources.stream_count)
 				return false;
-			const char *path = build->sources.streams[build->stream_next++];
+			const char *path = build->sources.streams[build->stream_next++].path;
 			if (container_open(path, CONTAINER_SEQUENTIAL, build->options->charset, &build->stream, &error)) {
 				build->stream = NULL;
 				damage_take(build, path, &error);
 				continue;
 			}
 		}
-		const char *path = build->sources.streams[build->stream_next - 1];
+		const size_t stream = build->stream_next - 1;
 		bool more = false;
-		bp_status status = source_stream_next(&build->sources, path, build->stream, member, &more, &error);
+		bp_status status = source_stream_next(&build->sources, stream, build->stream, member, &more, &error);
 		if (status && member->name) {
 			const size_t number = build->items.count;
 			if (items_add(&build->items, member, true, &error))
@@ -131,7 +131,7 @@ static bool member_find(struct build *build, struct source_item *member)
 			else
 				outcomes_refuse(build, number, &error);
 		} else if (status) {
-			damage_take(build, path, &error);
+			damage_take(build, build->sources.streams[stream].path, &error);
 		} else if (more) {
 			return true;
 		} else {

@@ -7,14 +7,14 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-enum { WARNINGS_MAX = 3, WARNING_BYTES = 400 };
+enum { WARNINGS_MAX = 4, WARNING_BYTES = 400 };
 static const char *const ORIGIN_NAMES[] = {
 	[RECORD_FITTED] = "fitted", [RECORD_REUSED] = "reused", [RECORD_RESUMED] = "resumed", [RECORD_KEPT] = "kept"};
 
 /* The warning that values were taken for marks. */
 static void holes_describe(const struct outcome *outcome, char text[WARNING_BYTES])
 {
-	const struct holes *holes = &outcome->holes;
+	const struct holes *holes = &outcome->delivery.holes;
 	const double *v = holes->value;
 	char what[100], black[120] = "";
 
@@ -39,11 +39,13 @@ static void holes_describe(const struct outcome *outcome, char text[WARNING_BYTE
 static int warnings_list(const struct outcome *outcome, char texts[WARNINGS_MAX][WARNING_BYTES], int *said)
 {
 	int count = 0;
-	if (outcome->source.nonfinite_count > 0)
+	if (outcome->delivery.source.nonfinite_count > 0)
 		snprintf(texts[count++], WARNING_BYTES, "%" PRIu64 " cells are NaN or infinite; they are treated as not measured",
-		         outcome->source.nonfinite_count);
-	if (outcome->holes.count > 0)
+		         outcome->delivery.source.nonfinite_count);
+	if (outcome->delivery.holes.count > 0)
 		holes_describe(outcome, texts[count++]);
+	if (outcome->delivery.black)
+		snprintf(texts[count++], WARNING_BYTES, "every value is 0: it reflects no light at all; is the file what it should be?");
 	*said = count;
 	for (int c = 0; c < 3; c++)
 		if (!outcome->head.colour[c].converged) {
@@ -95,7 +97,7 @@ static void material_json(const struct item *item, const char *label, const stru
 	for (int stage = 0; stage < STAGE_COUNT; stage++)
 		json_number(&json, stage_name((enum stage)stage), outcome->stage_seconds[stage]);
 	json_close(&json);
-	json_string(&json, "record", ORIGIN_NAMES[outcome->origin]);
+	json_string(&json, "record", ORIGIN_NAMES[outcome->delivery.origin]);
 	json_string(&json, "profile", profile_name(outcome->head.profile));
 	facts_brief(&json, &outcome->head);
 	json_array(&json, "warnings");

@@ -20,15 +20,21 @@ enum record_origin {
 	RECORD_KEPT     /* carried by its file (record_carried.h) */
 };
 
+/* What a worker delivers: this, and the record behind it. */
+struct delivery {
+	struct record_source source; /* the file that was read; of a record that was kept, its head has the measured one */
+	struct holes holes;          /* what was made of values that stand for "not measured" */
+	enum record_origin origin;
+	bool black; /* every measured cell is 0 */
+};
+
 /* What became of one material: everything that its report needs. */
 struct outcome {
-	bp_error error; /* status BP_OK: packed, and head is filled */
+	bp_error error; /* status BP_OK: packed, and the rest is filled */
 	double seconds; /* in the worker */
 	double stage_seconds[STAGE_COUNT];
 	struct record_head head;
-	struct record_source source; /* the file */
-	struct holes holes;
-	enum record_origin origin;
+	struct delivery delivery;
 };
 
 struct build_totals {

@@ -16,6 +16,9 @@
 #include "items.h"
 #include "journal.h"
 #include "manifest.h"
+#include "name.h"
+#include "tool/interrupt.h"
+#include "tool/report.h"
 #include "tool/workers.h"
 
 struct build {
@@ -39,15 +42,24 @@ struct build {
 };
 
 /* True when the build goes on: no error that ends it, no signal. */
-bool build_goes_on(const struct build *build);
+static inline bool build_goes_on(const struct build *build) { return !build->stopped && !interrupt_signal(); }
 
 /* Reports an error that ends the build. */
-void build_stop(struct build *build, const char *file, const bp_error *error);
+static inline void build_stop(struct build *build, const char *file, const bp_error *error)
+{
+	report_error(file, NULL, error);
+	build->stopped = true;
+}
 
 /*
- * Whether a material of this name belongs to the shard: name_shard. Names alone decide, so the shards of any count are disjoint
- * and together all there is.
+ * Whether a material of this name belongs to the shard. Names alone decide, so the shards of any count are disjoint and together
+ * all there is.
  */
-bool build_shard_has(const struct build_options *options, const char *name);
+static inline bool build_shard_has(const struct build_options *options, const char *name)
+{
+	return options->shard_count <= 1 || name_shard(name, options->shard_count) == options->shard;
+}
+
+worker_fn build_work; /* its user is the struct build, as it was when the worker was forked; it makes a delivery */
 
 #endif

@@ -1,4 +1,4 @@
-#include "build_work.h"
+#include "build_state.h"
 
 #include "archive/merge.h"
 #include "codec/record_carried.h"
@@ -86,6 +86,14 @@ static bp_status record_get(const struct build *build, const char *name, const s
 	return record_encode(lattice, name, &delivery->source, options, record, record_bytes, NULL, error);
 }
 
+static bool is_black(const struct lattice *lattice)
+{
+	for (size_t cell = 0; cell < lattice_cells(lattice->dims); cell++)
+		if (lattice->valid[cell] && (lattice->rgb[0][cell] > 0 || lattice->rgb[1][cell] > 0 || lattice->rgb[2][cell] > 0))
+			return false;
+	return true;
+}
+
 /* Both in one piece. The record is freed. */
 static bp_status delivery_make(const struct delivery *delivery, uint8_t *record, size_t record_bytes, uint8_t **out,
                                size_t *out_bytes, bp_error *error)
@@ -136,6 +144,7 @@ bp_status build_work(void *user, const struct job *job, int fd, uint8_t **out, s
 	stage_enter(STAGE_REST);
 	status = lattice_take_holes(&lattice, build->options->fit.zeros, &delivery.holes, error);
 	delivery.source.hole_count = (uint32_t)delivery.holes.count;
+	delivery.black = !status && is_black(&lattice);
 	if (!status)
 		status = record_get(build, job->name, &lattice, &carried, &delivery, &record, &record_bytes, error);
 	lattice_free(&lattice);

@@ -64,23 +64,21 @@ static size_t columns_split(char *line, char **cells)
 /* Decides what the columns are; true when this first line is a header and names no material. */
 static bool columns_decide(struct parser *parser, char **cells, size_t count)
 {
+	static const char *const NAMES[] = {[COLUMN_NAME] = "name", [COLUMN_BYTES] = "bytes", [COLUMN_SHA256] = "sha256"};
+	static const enum column USUAL[] = {COLUMN_NAME, COLUMN_BYTES, COLUMN_SHA256};
 	bool has_name = false;
 	for (size_t i = 0; i < count; i++)
-		has_name |= !strcmp(cells[i], "name");
-	bool header = count > 1 && has_name;
-	for (size_t i = 0; i < COLUMNS_MAX; i++) {
-		parser->columns[i] = COLUMN_OTHER;
-		if (!header)
-			parser->columns[i] = i == 0 ? COLUMN_NAME : i == 1 ? COLUMN_BYTES : i == 2 ? COLUMN_SHA256 : COLUMN_OTHER;
-		else if (i < count && !strcmp(cells[i], "name"))
-			parser->columns[i] = COLUMN_NAME;
-		else if (i < count && !strcmp(cells[i], "bytes"))
-			parser->columns[i] = COLUMN_BYTES;
-		else if (i < count && !strcmp(cells[i], "sha256"))
-			parser->columns[i] = COLUMN_SHA256;
-	}
+		for (int column = COLUMN_NAME; column <= COLUMN_SHA256; column++)
+			if (!strcmp(cells[i], NAMES[column])) {
+				parser->columns[i] = (enum column)column;
+				has_name |= column == COLUMN_NAME;
+			}
 	parser->decided = true;
-	return header;
+	if (count > 1 && has_name)
+		return true;
+	memset(parser->columns, 0, sizeof parser->columns);
+	memcpy(parser->columns, USUAL, sizeof USUAL);
+	return false;
 }
 
 static bool bytes_parse(const char *text, uint64_t *out)

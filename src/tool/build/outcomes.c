@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "build_work.h"
 #include "error.h"
 #include "tool/progress.h"
 #include "tool/report.h"
@@ -40,20 +39,17 @@ static void outcomes_report(struct build *build)
 static bp_status delivery_accept(struct build *build, struct item *item, const struct job_result *result, struct outcome *outcome,
                                  bp_error *error)
 {
-	struct delivery delivery;
-	if (result->record_bytes < sizeof delivery)
+	struct delivery *delivery = &outcome->delivery;
+	if (result->record_bytes < sizeof *delivery)
 		return error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered no record");
-	const size_t record_bytes = result->record_bytes - sizeof delivery;
-	memcpy(&delivery, result->record, sizeof delivery);
-	bp_status status = record_head_read(result->record + sizeof delivery, record_bytes, &outcome->head, error);
+	const size_t record_bytes = result->record_bytes - sizeof *delivery;
+	memcpy(delivery, result->record, sizeof *delivery);
+	bp_status status = record_head_read(result->record + sizeof *delivery, record_bytes, &outcome->head, error);
 	if (!status && (outcome->head.record_bytes != record_bytes || strcmp(outcome->head.name, item->source.name) != 0))
 		status = error_set(error, BP_ERROR_CORRUPT, BP_NO_OFFSET, "the worker delivered a damaged record");
 	const struct manifest_entry *entry = manifest_find(&build->manifest, item->source.name);
 	if (!status && entry)
-		status = manifest_check(entry, delivery.source.bytes, delivery.source.sha256, error);
-	outcome->source = delivery.source;
-	outcome->holes = delivery.holes;
-	outcome->origin = delivery.origin;
+		status = manifest_check(entry, delivery->source.bytes, delivery->source.sha256, error);
 	return status;
 }
 
@@ -66,9 +62,10 @@ static void outcome_take(struct build *build, struct item *item, struct outcome 
 	} else {
 		item->state = ITEM_PACKED;
 		build->totals.packed++;
-		build->totals.reused += outcome->origin == RECORD_REUSED || outcome->origin == RECORD_RESUMED;
-		build->totals.kept += outcome->origin == RECORD_KEPT;
-		build->totals.source_bytes += outcome->source.bytes;
+		const enum record_origin origin = outcome->delivery.origin;
+		build->totals.reused += origin == RECORD_REUSED || origin == RECORD_RESUMED;
+		build->totals.kept += origin == RECORD_KEPT;
+		build->totals.source_bytes += outcome->delivery.source.bytes;
 	}
 	build->bytes_done += item_weight(&item->source);
 	item->outcome = outcome;
@@ -81,7 +78,7 @@ static bp_status record_store(struct build *build, struct item *item, const stru
                               bp_error *error)
 {
 	const struct journal_entry *entry =
-		outcome->origin == RECORD_RESUMED ? journal_find(&build->journal, item->source.name) : NULL;
+		outcome->delivery.origin == RECORD_RESUMED ? journal_find(&build->journal, item->source.name) : NULL;
 	item->record_bytes = outcome->head.record_bytes;
 	if (!entry || entry->bytes != item->record_bytes)
 		return journal_add(&build->journal, record, item->record_bytes, &item->journal_offset, error);

@@ -50,23 +50,18 @@ static bp_status items_read(struct compare *compare, bp_error *error)
 	return BP_OK;
 }
 
-static void item_fail(struct compare *compare, struct compare_item *item, const bp_error *error)
-{
-	report_error(compare->archive_path, item->name, error);
-	item->done = item->failed = true;
-	compare->failed++;
-}
-
 /* Finds every item's measured file; those without one have failed. */
 static bp_status sources_find(struct compare *compare, bp_error *error)
 {
 	bp_status status = measured_set_find(&compare->measured, compare->folder, error);
 	for (size_t n = 0; n < compare->count && status == BP_OK; n++) {
-		bp_error missing;
+		struct compare_item *item = &compare->items[n];
 		if (compare->measured.item[n].source)
 			continue;
-		error_set(&missing, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s holds no measured file of that name", compare->folder);
-		item_fail(compare, &compare->items[n], &missing);
+		error_set(&item->error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "%s holds no measured file of that name", compare->folder);
+		report_error(compare->archive_path, item->name, &item->error);
+		item->done = item->told = true;
+		compare->failed++;
 		compare->measured.name[n] = NULL;
 	}
 	return status;
@@ -130,11 +125,9 @@ static void rows_print(struct compare *compare)
 {
 	for (; compare->printed < compare->count && compare->items[compare->printed].done; compare->printed++) {
 		struct compare_item *item = &compare->items[compare->printed];
-		if (item->error)
-			report_error(compare->archive_path, item->name, item->error);
-		free(item->error);
-		item->error = NULL;
-		if (item->failed)
+		if (item->error.status && !item->told)
+			report_error(compare->archive_path, item->name, &item->error);
+		if (item->error.status)
 			continue;
 		if (!compare->headed)
 			compare_report_head(&compare->report);
@@ -148,24 +141,17 @@ static void result_take(void *user, const struct job_result *result)
 {
 	struct compare *compare = user;
 	struct compare_item *item = &compare->items[result->number];
-	bp_error error = result->error;
 	size_t whole = sizeof item->result;
-	if (!error.status && result->record_bytes >= whole)
+	item->error = result->error;
+	if (!item->error.status && result->record_bytes >= whole)
 		memcpy(&item->result, result->record, whole);
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		whole += item->result.png_bytes[l];
-	if (!error.status && result->record_bytes != whole)
-		error_set(&error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is not whole");
-	if (!error.status) {
-		error.status = images_write(compare, item, result->record + sizeof item->result, &error);
-	}
-	if (error.status && (item->error = malloc(sizeof error))) {
-		*item->error = error;
-		item->failed = true;
-		compare->failed++;
-	} else if (error.status) {
-		item_fail(compare, item, &error); /* out of turn, but said */
-	}
+	if (!item->error.status && result->record_bytes != whole)
+		error_set(&item->error, BP_ERROR_IO, BP_NO_OFFSET, "the worker's answer is not whole");
+	if (!item->error.status)
+		item->error.status = images_write(compare, item, result->record + sizeof item->result, &item->error);
+	compare->failed += item->error.status != BP_OK;
 	item->done = true;
 	rows_print(compare);
 }
@@ -253,8 +239,6 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	if (code != EXIT_OK && compare.images_made)
 		rmdir(compare.images); /* where it holds pictures it stays */
 	comparison_plans_free(&compare.job.plans);
-	for (size_t n = 0; n < compare.count && compare.items; n++)
-		free(compare.items[n].error);
 	free(compare.items);
 	measured_set_free(&compare.measured);
 	selection_close(&compare.selection);
@@ -267,7 +251,7 @@ const struct command command_compare = {
 	.description = "measure how far an archive is from the measured files",
 	.usage = "Usage: brdfpack compare [OPTION]... ARCHIVE MEASURED [NAME]...\n"
 			 "Compares materials of the archive (all, or those named) with the MERL files of the same names in the folder\n"
-			 "MEASURED (or zip), and prints one row per material, then median, worst and mean:\n"
+			 "MEASURED (or zip), and prints one row per material, then median, worst and mean, in two blocks:\n"
 			 "  PSNR       of a rendered sphere in dB, from 8-bit and from float sRGB values\n"
 			 "  dE ITP     mean colour difference of its pixels (ITU-R BT.2124); 1 is just noticeable at best\n"
 			 "  log RMSE   root mean square of log10((decoded + 1e-3)/(measured + 1e-3))\n"

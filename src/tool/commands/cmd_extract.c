@@ -41,16 +41,17 @@ static bp_status room_fit(struct decoded_room *room, const struct model *model, 
 	if (status)
 		return status;
 	room->below = malloc(cells);
-	status =
-		room->below ? lattice_below_horizon(model->dims, model->horizon_limit, room->below, error) : error_memory(error, cells);
-	room->limit = model->horizon_limit;
-	if (status)
+	if (!room->below) {
 		room_free(room);
-	return status;
+		return error_memory(error, cells);
+	}
+	lattice_below_horizon(model->dims, model->horizon_limit, room->below);
+	room->limit = model->horizon_limit;
+	return BP_OK;
 }
 
-/* What to write: a decoded table with its record, the table alone, the parameters, or a renderer's file. */
-enum form { FORM_MERL, FORM_PLAIN, FORM_JSON, FORM_EXPORT };
+/* What to write: a decoded table, the parameters, or a renderer's file. */
+enum form { FORM_MERL, FORM_JSON, FORM_EXPORT };
 
 /* What --format is called by, and the suffix of its files. */
 static const struct format {
@@ -145,8 +146,9 @@ static bp_status json_write(const struct record_head *head, const struct origin 
 
 struct extraction {
 	struct selection selection;
-	enum form form;
-	struct export_options export;
+	const struct format *format;
+	bool plain;                   /* FORM_MERL without the record */
+	struct export_options export; /* FORM_EXPORT */
 	struct decoded_room room;
 	struct index_entry entry; /* of the material that was asked for last */
 };
@@ -170,7 +172,7 @@ static bp_status material_write(void *user, uint64_t n, const char *path, enum o
 		status = archive_entry_head(selection->archive, &extraction->entry, &head, error);
 	if (status)
 		return status;
-	if (extraction->form == FORM_JSON) {
+	if (extraction->format->form == FORM_JSON) {
 		struct origin origin;
 		status = archive_entry_origin(selection->archive, &extraction->entry, &head, &origin, error);
 		return status ? status : json_write(&head, &origin, path, rule, error);
@@ -178,9 +180,9 @@ static bp_status material_write(void *user, uint64_t n, const char *path, enum o
 	status = lattice_size_check(&head, extraction->room.any_lattice, error);
 	if (status)
 		return status;
-	if (extraction->form == FORM_EXPORT)
+	if (extraction->format->form == FORM_EXPORT)
 		return export_write(selection, &extraction->entry, &head, path, rule, &extraction->export, error);
-	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->form == FORM_PLAIN, &extraction->room, error);
+	return merl_write(selection, &extraction->entry, &head, path, rule, extraction->plain, &extraction->room, error);
 }
 
 static void material_failed(void *user, uint64_t n, const bp_error *error)
@@ -207,61 +209,54 @@ static bool format_take(const struct command *self, const struct option_rule *ru
 	return false;
 }
 
-/* What belongs together on the command line. */
-struct wishes {
-	const struct format *format;
-	const char *folder;
-	int64_t size; /* bytes; 0: not given */
-	bool plain, spectral, force;
-};
-
-/* Fills what is to be extracted; an exit code. */
-static int wishes_take(const struct command *self, const struct wishes *wishes, struct extraction *out)
+/* What belongs together on the command line; `size` 0: not given. Fills what is exported; an exit code. */
+static int export_take(const struct command *self, struct extraction *extraction, int64_t size)
 {
-	const struct format *format = wishes->format;
-	const bool exports = format->form == FORM_EXPORT;
-	const uint64_t least = exports ? export_bytes_least(format->export, wishes->spectral) : 0;
-	const uint64_t usual = exports ? export_bytes_usual(format->export, wishes->spectral) : 0;
-	const uint64_t most = wishes->size ? (uint64_t)wishes->size : usual;
-	if (wishes->plain && format->form != FORM_MERL)
+	const struct format *format = extraction->format;
+	const bool exports = format->form == FORM_EXPORT, spectral = extraction->export.spectral;
+	const uint64_t least = exports ? export_bytes_least(format->export, spectral) : 0;
+	const uint64_t usual = exports ? export_bytes_usual(format->export, spectral) : 0;
+	const uint64_t most = size ? (uint64_t)size : usual;
+	if (extraction->plain && format->form != FORM_MERL)
 		return report_usage(self, "--plain is about MERL files, --format %s writes none", format->name);
-	if (wishes->spectral && !(exports && format->export == EXPORT_BSDF))
+	if (spectral && !(exports && format->export == EXPORT_BSDF))
 		return report_usage(self, "--spectral is about --format bsdf");
-	if (wishes->size && !exports)
+	if (size && !exports)
 		return report_usage(self, "--size is about --format bsdf and --format mbsdf");
 	if (exports && most < least)
 		return report_usage(
 			self, "--size: %" PRIu64 " bytes are too few for --format %s%s; %" PRIu64 " are enough for its smallest file", most,
-			format->name, wishes->spectral ? " --spectral" : "", least);
-	out->form = wishes->plain ? FORM_PLAIN : format->form;
-	out->export = (struct export_options){format->export, wishes->spectral, most};
+			format->name, spectral ? " --spectral" : "", least);
+	extraction->export = (struct export_options){format->export, spectral, most};
 	return EXIT_OK;
 }
 
 static int extract_main(const struct command *self, int argc, char **argv)
 {
-	struct extraction extraction = {.form = FORM_MERL};
-	struct wishes wishes = {.format = FORMATS, .folder = "."};
-	const struct option_rule rules[] = {{"directory", 'C', option_text, .to = &wishes.folder},
-	                                    {"format", 0, format_take, .to = &wishes.format},
-	                                    {"plain", 0, option_flag, .to = &wishes.plain},
-	                                    {"force", 0, option_flag, .to = &wishes.force},
+	struct extraction extraction = {.format = FORMATS};
+	const char *folder = ".";
+	int64_t size = 0;
+	bool force = false;
+	const struct option_rule rules[] = {{"directory", 'C', option_text, .to = &folder},
+	                                    {"format", 0, format_take, .to = &extraction.format},
+	                                    {"plain", 0, option_flag, .to = &extraction.plain},
+	                                    {"force", 0, option_flag, .to = &force},
 	                                    {"any-lattice", 0, option_flag, .to = &extraction.room.any_lattice},
-	                                    {"spectral", 0, option_flag, .to = &wishes.spectral},
-	                                    {"size", 0, option_bytes, &wishes.size, 1, EXPORT_BYTES_MAX},
+	                                    {"spectral", 0, option_flag, .to = &extraction.export.spectral},
+	                                    {"size", 0, option_bytes, &size, 1, EXPORT_BYTES_MAX},
 	                                    {0}};
 	int code = options_read(self, argc, argv, rules);
 	if (code != OPTIONS_END)
 		return code;
-	code = wishes_take(self, &wishes, &extraction);
+	code = export_take(self, &extraction, size);
 	if (code == EXIT_OK)
 		code = selection_from(&extraction.selection, self, argv + optind, argc - optind);
 	if (code != EXIT_OK)
 		return code;
-	const struct folder_set set = {.folder = wishes.folder,
-	                               .suffix = wishes.format->suffix,
+	const struct folder_set set = {.folder = folder,
+	                               .suffix = extraction.format->suffix,
 	                               .count = extraction.selection.count,
-	                               .force = wishes.force,
+	                               .force = force,
 	                               .user = &extraction,
 	                               .name = material_name,
 	                               .write = material_write,

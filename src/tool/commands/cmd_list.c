@@ -45,28 +45,26 @@ static void row_print(const struct record_head *head, int width)
 	putchar('\n');
 }
 
-/* Of which channel a section of the paper's profile is, as its name ends. */
-static const char *section_channel(unsigned type)
-{
-	static const char *const ENDS[] = {", R", ", G", ", B"};
-	return type >= SECTION_MARGINALS && type < SECTION_MARGINALS + 3 * SECTION_CHANNEL
-	           ? ENDS[(type - SECTION_MARGINALS) / SECTION_CHANNEL]
-	           : "";
-}
-
+/* What a section holds. The first types are the paper's profile's: four for each channel, from SECTION_MARGINALS on. */
 static const char *section_name(unsigned type)
 {
-	switch (type < SECTION_MARGINALS + 3 * SECTION_CHANNEL ? (type - SECTION_MARGINALS) % SECTION_CHANNEL + SECTION_MARGINALS
-	                                                       : type) {
-	case SECTION_MARGINALS: return "marginals";
-	case SECTION_PAIR_HD: return "c_hd";
-	case SECTION_PAIR_HPHI: return "c_hphi";
-	case SECTION_SLICES: return "c_dphi|h";
-	case SECTION_FIELDS: return "fields";
-	case SECTION_PLANES: return "bit planes";
-	case SECTION_ORIGIN: return "origin";
-	default: return "other";
-	}
+	static const char *const NAMES[SECTION_ORIGIN + 1] = {"other",
+	                                                      "marginals, R",
+	                                                      "c_hd, R",
+	                                                      "c_hphi, R",
+	                                                      "c_dphi|h, R",
+	                                                      "marginals, G",
+	                                                      "c_hd, G",
+	                                                      "c_hphi, G",
+	                                                      "c_dphi|h, G",
+	                                                      "marginals, B",
+	                                                      "c_hd, B",
+	                                                      "c_hphi, B",
+	                                                      "c_dphi|h, B",
+	                                                      [SECTION_FIELDS] = "fields",
+	                                                      [SECTION_PLANES] = "bit planes",
+	                                                      [SECTION_ORIGIN] = "origin"};
+	return type <= SECTION_ORIGIN && NAMES[type] ? NAMES[type] : "other";
 }
 
 /* What kind of file the source was, unless it was a MERL table. */
@@ -117,9 +115,8 @@ static void material_print(const struct record_head *head, const struct origin *
 	}
 	for (uint32_t i = 0; i < head->section_count; i++) {
 		const struct record_section *section = &head->sections[i];
-		printf("  section %-3" PRIu32 " %8" PRIu32 " bytes  layer %u  type %u (%s%s)  codec %u.%u", i, section->bytes,
-		       section->layer, section->type, section_name(section->type), section_channel(section->type), section->codec,
-		       section->version);
+		printf("  section %-3" PRIu32 " %8" PRIu32 " bytes  layer %u  type %u (%s)  codec %u.%u", i, section->bytes,
+		       section->layer, section->type, section_name(section->type), section->codec, section->version);
 		if (section->error == section->error)
 			printf("  error %.6g", section->error);
 		putchar('\n');

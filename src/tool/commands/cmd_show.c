@@ -1,13 +1,13 @@
 #include "tool/command.h"
 #include "tool/facts.h"
 #include "tool/material.h"
+#include "tool/measured.h"
 #include "tool/options.h"
 #include "tool/output_check.h"
 #include "tool/report.h"
 
 #include "error.h"
 #include "merl/merl_file.h"
-#include "merl/sha256.h"
 #include "merl/source_kind.h"
 #include "render/comparison.h"
 #include "render/figure.h"
@@ -32,6 +32,7 @@ struct show {
 	struct material material;
 	struct lattice reference;    /* of --measured */
 	const struct lattice *truth; /* the reference, the material's own, or NULL */
+	uint8_t *counting;           /* where there is no truth: cells that are drawn */
 	struct density_source measured, decoded;
 	double error_before[LATTICE_EXTENT_MAX], error_after[LATTICE_EXTENT_MAX];
 	struct figure figure;
@@ -74,27 +75,21 @@ static bp_status measured_path(const char *folder, const char *name, char **out,
 /* The measured file of an archived material: the path, or that of its name in it. Another one than was packed is told. */
 static bp_status reference_read(const char *path, const struct record_head *head, struct lattice *out, bp_error *error)
 {
-	struct sha256 sha;
-	uint8_t digest[32];
-	struct stat status;
+	struct stat about;
 	char *file = NULL;
-	bp_error reason;
-	bp_status result = BP_OK;
-	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && (result = measured_path(path, head->name, &file, error)) != BP_OK)
-		return result;
-	sha256_start(&sha);
-	result = lattice_read_path(file ? file : path,
-	                           &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, out, &reason);
-	sha256_finish(&sha, digest);
-	if (result == BP_OK && memcmp(digest, head->source.sha256, sizeof digest) != 0)
-		report_warning(file ? file : path, head->name, "not the file that was packed: its SHA-256 is another");
-	struct holes holes;
-	if (result == BP_OK && (result = lattice_take_holes(out, head->options.zeros, &holes, &reason)) != BP_OK)
-		lattice_free(out);
-	if (result != BP_OK)
-		error_set(error, result, reason.offset, "%s: %s", file ? file : path, reason.message);
+	bool packed;
+	bp_status status = BP_OK;
+	if (stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
+		file = strdup(path);
+	else if ((status = measured_path(path, head->name, &file, error)))
+		return status;
+	if (!file)
+		return error_memory(error, strlen(path));
+	status = measured_read(&(struct source_item){.path = file}, &(struct source_cursor){NULL}, head, out, &packed, error);
+	if (!status && !packed)
+		report_warning(file, head->name, "not the file that was packed: its SHA-256 is another");
 	free(file);
-	return result;
+	return status;
 }
 
 /* A measured file alone: packs it in memory, as `build` would, and decodes the record. */
@@ -121,15 +116,11 @@ static bp_status material_pack(struct show *show, const struct show_options *opt
 static bp_status show_measure(struct show *show, bp_error *error)
 {
 	const struct material *material = &show->material;
-	uint8_t *counting = NULL;
 	bp_status status;
 
 	if (!show->truth) {
-		if ((status = material_counting_cells(&material->head, &counting, error)) != BP_OK)
-			return status;
-		status = density_source_decoded(&material->table, counting, &show->decoded, error);
-		free(counting);
-		return status;
+		status = material_counting_cells(&material->head, &show->counting, error);
+		return status ? status : density_source_decoded(&material->table, show->counting, &show->decoded, error);
 	}
 	if (comparison_dims_check(show->truth->dims, material->table.dims, error))
 		return BP_ERROR_BAD_INPUT;
@@ -232,6 +223,7 @@ static int show_main(const struct command *self, int argc, char **argv)
 		code = show_draw(show, &options);
 	density_source_free(&show->measured);
 	density_source_free(&show->decoded);
+	free(show->counting);
 	lattice_free(&show->reference);
 	material_free(&show->material);
 	free(show);

@@ -45,7 +45,7 @@ static void other_forms_report(struct subset *subset, struct selection *selectio
 		if (archive_entry(selection->archive, n, &leaf, &entry, NULL))
 			return; /* copying will say why */
 		if (normal_forms_find(forms, entry.name, &number)) {
-			selection_missing_report(selection, subset->words.word[number].text);
+			selection_missing_report(selection, subset->words.word[number].text, subset->words.word[number].file);
 			subset->lacking = true;
 		}
 	}
@@ -67,7 +67,7 @@ static bool scenes_find(struct subset *subset, struct selection *selection)
 			report_error(subset->path, word->text, &error);
 			break;
 		} else if (source_suffix_bytes(word->text) && !word->spare) {
-			selection_missing_report(selection, word->text);
+			selection_missing_report(selection, word->text, word->file);
 			subset->lacking = true;
 		} else if (!word->spare && material_name_bare(word->text, name)) {
 			normal_forms_add(&forms, name, n);

@@ -25,8 +25,8 @@ struct compare_result {
 /* One material that is compared. */
 struct compare_item {
 	const char *name;
-	bool done, failed;
-	bp_error *error; /* of a measurement that failed, until its turn to be reported comes */
+	bool done, told; /* `told`: its error has been reported */
+	bp_error error;  /* why it failed, reported in its turn; status BP_OK: it did not */
 	struct compare_result result;
 };
 

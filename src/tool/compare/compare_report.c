@@ -24,17 +24,25 @@ enum figure {
 
 static const struct {
 	const char *key;
-	int width, digits;
+	int width, digits; /* the blank before it counts */
 	bool low_is_bad;
 } FIGURES[FIGURE_COUNT] = {
-	{"psnr8_key", 6, 2, true},         {"psnr_key", 6, 2, true},
-	{"delta_itp_key", 7, 4, false},    {"psnr8_env", 6, 2, true},
-	{"psnr_env", 6, 2, true},          {"delta_itp_env", 7, 4, false},
-	{"psnr8_point", 6, 2, true},       {"psnr_point", 6, 2, true},
-	{"delta_itp_point", 7, 4, false},  {"log_rmse", 8, 5, false},
-	{"seen_log_rmse", 8, 5, false},    {"cube_root_rmse", 9, 6, false},
-	{"largest_relative", 9, 4, false}, {"albedo_measured", 8, 4, false},
-	{"albedo", 8, 4, false},           {"bytes", 8, 0, false},
+	{"psnr8_key", 7, 2, true},
+	{"psnr_key", 7, 2, true},
+	{"delta_itp_key", 8, 4, false},
+	{"psnr8_env", 7, 2, true},
+	{"psnr_env", 7, 2, true},
+	{"delta_itp_env", 8, 4, false},
+	{"psnr8_point", 7, 2, true},
+	{"psnr_point", 7, 2, true},
+	{"delta_itp_point", 8, 4, false},
+	{"log_rmse", 8, 5, false},
+	{"seen_log_rmse", 8, 5, false},
+	{"cube_root_rmse", 10, 6, false},
+	{"largest_relative", 10, 4, false},
+	{"albedo_measured", 9, 4, false},
+	{"albedo", 9, 4, false},
+	{"bytes", 9, 0, false},
 };
 
 static bool figure_shown(const struct compare_report *report, int figure)
@@ -60,32 +68,47 @@ static void figures_of(const struct compare_item *item, double values[FIGURE_COU
 	values[FIGURE_BYTES] = item->result.record_bytes;
 }
 
-void compare_report_head(const struct compare_report *report)
+/*
+ * The table has two blocks of at most 76 columns beside the names, so that a terminal of 100 holds it: spheres and bytes as the
+ * materials are measured, errors and albedos after them.
+ */
+enum block { BLOCK_SPHERES, BLOCK_ERRORS, BLOCKS };
+
+static bool figure_is_of(enum block block, int figure)
 {
-	if (report->json)
-		return;
-	printf("%-*s", report->name_width, "");
-	for (int l = 0; l < LIGHTING_COUNT; l++)
-		if (report->lightings >> l & 1)
-			printf("   PSNR %-6s  dE ITP", lighting_name((enum lighting)l));
-	printf("       log  of which cube-root  largest relative error, at          albedo\n");
-	printf("%-*s", report->name_width, "material");
-	for (int l = 0; l < LIGHTING_COUNT; l++)
-		if (report->lightings >> l & 1)
-			printf("  8-bit  float    mean");
-	printf("      RMSE      seen      RMSE     value theta_h theta_d phi_d  measured  decoded    bytes\n");
+	return (block == BLOCK_SPHERES) == (figure < FIGURE_LOG || figure == FIGURE_BYTES);
 }
 
-static void text_row(const struct compare_report *report, const char *name, const double values[FIGURE_COUNT],
+static void block_head(const struct compare_report *report, enum block block)
+{
+	printf("%-*s", report->name_width, "");
+	for (int l = 0; l < LIGHTING_COUNT && block == BLOCK_SPHERES; l++)
+		if (report->lightings >> l & 1)
+			printf("   PSNR %-6s  dE ITP", lighting_name((enum lighting)l));
+	printf("%s\n%-*s", block == BLOCK_ERRORS ? "        log RMSE cube-root  largest relative error, at            albedo" : "",
+	       report->name_width, "material");
+	for (int l = 0; l < LIGHTING_COUNT && block == BLOCK_SPHERES; l++)
+		if (report->lightings >> l & 1)
+			printf("  8-bit  float    mean");
+	printf("%s\n",
+	       block == BLOCK_ERRORS ? "     all    seen      RMSE     value theta_h theta_d phi_d measured  decoded" : "    bytes");
+}
+
+void compare_report_head(const struct compare_report *report)
+{
+	if (!report->json)
+		block_head(report, BLOCK_SPHERES);
+}
+
+static void text_row(const struct compare_report *report, enum block block, const char *name, const double values[FIGURE_COUNT],
                      const struct worst_cell *worst)
 {
 	text_print(name, report->name_width);
 	for (int f = 0; f < FIGURE_COUNT; f++) {
-		if (!figure_shown(report, f))
+		if (!figure_shown(report, f) || !figure_is_of(block, f))
 			continue;
-		printf(f >= FIGURE_LOG ? "  " : " ");
 		if (f == FIGURE_RELATIVE) /* of any magnitude */
-			printf("%8.4g", values[f]);
+			printf("%*.4g", FIGURES[f].width, values[f]);
 		else
 			printf("%*.*f", FIGURES[f].width, FIGURES[f].digits, values[f]);
 		if (f == FIGURE_RELATIVE && worst)
@@ -134,7 +157,7 @@ void compare_report_row(const struct compare_report *report, const struct compar
 	if (report->json)
 		json_row(report, item, values);
 	else
-		text_row(report, item->name, values, &item->result.comparison.worst);
+		text_row(report, BLOCK_SPHERES, item->name, values, NULL);
 }
 
 enum { MEDIAN, WORST, MEAN, SUMMARY_ROWS };
@@ -176,11 +199,11 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 	if (!column)
 		return error_memory(error, count * sizeof *column);
 	for (size_t n = 0; n < count; n++)
-		confirmed += items[n].done && !items[n].failed && items[n].result.confirmed;
+		confirmed += items[n].done && !items[n].error.status && items[n].result.confirmed;
 	for (int f = 0; f < FIGURE_COUNT; f++) {
 		used = 0;
 		for (size_t n = 0; n < count; n++)
-			if (items[n].done && !items[n].failed) {
+			if (items[n].done && !items[n].error.status) {
 				figures_of(&items[n], values);
 				column[used++] = values[f];
 			}
@@ -195,8 +218,19 @@ bp_status compare_report_summary(const struct compare_report *report, const stru
 		summary_json(report, rows, used, confirmed, failed_count);
 		return BP_OK;
 	}
-	for (int r = 0; used && r < SUMMARY_ROWS; r++)
-		text_row(report, SUMMARY_NAMES[r], rows[r], NULL);
+	for (int block = BLOCK_SPHERES; used && block < BLOCKS; block++) {
+		if (block == BLOCK_ERRORS) {
+			putchar('\n');
+			block_head(report, BLOCK_ERRORS);
+		}
+		for (size_t n = 0; block == BLOCK_ERRORS && n < count; n++)
+			if (items[n].done && !items[n].error.status) {
+				figures_of(&items[n], values);
+				text_row(report, BLOCK_ERRORS, items[n].name, values, &items[n].result.comparison.worst);
+			}
+		for (int r = 0; r < SUMMARY_ROWS; r++)
+			text_row(report, (enum block)block, SUMMARY_NAMES[r], rows[r], NULL);
+	}
 	if (used && confirmed == count)
 		printf("The errors that the records tell of their layers are confirmed.\n");
 	else if (used)

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "error.h"
-#include "merl/sha256.h"
 
 /* Head, figures and PNG files in one malloc'ed block. */
 static bp_status result_pack(const struct compare_result *result, uint8_t *const png[LIGHTING_COUNT], uint8_t **out,
@@ -67,7 +66,7 @@ static bp_status layers_confirm(const struct compare_job *job, const struct meas
 		struct fidelity measured;
 		status = decoded_load(job, item, head, l + 1, table, error);
 		if (status == BP_OK)
-			status = fidelity_measure(lattice, table, &measured, error);
+			status = fidelity_measure(lattice, table, 1, &measured, error);
 		if (status == BP_OK)
 			status = figures_confirm(head, l, &measured, error);
 	}
@@ -84,28 +83,14 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 	struct lattice lattice = {0};
 	struct expansion table = {0};
 	struct record_head head;
-	struct holes holes;
-	struct sha256 sha;
-	uint8_t digest[32];
-	bp_error reason;
+	bp_status status;
 
 	(void)fd;
-	sha256_start(&sha);
-	bp_status status =
-		source_item_read(item->source, &compare->cursor,
-	                     &(struct merl_reading){.seen = sha256_add, .seen_user = &sha, .any_dims = true}, &lattice, &reason);
-	if (status != BP_OK) {
-		error_set(error, status, BP_NO_OFFSET, "%s: %s", item->source->path, reason.message);
-		goto out;
-	}
-	sha256_finish(&sha, digest);
-	if ((status = archive_entry_head(compare->archive, &item->entry, &head, error)) != BP_OK ||
-	    (status = decoded_load(compare, item, &head, 0, &table, error)) != BP_OK)
+	if ((status = archive_entry_head(compare->archive, &item->entry, &head, error)) ||
+	    (status = measured_read(item->source, &compare->cursor, &head, &lattice, &result.confirmed, error)) ||
+	    (status = decoded_load(compare, item, &head, 0, &table, error)))
 		goto out;
 	result.record_bytes = head.record_bytes;
-	status = lattice_take_holes(&lattice, head.options.zeros, &holes, error);
-	if (status != BP_OK)
-		goto out;
 	status = comparison_measure(&compare->plans, &lattice, &table, &result.comparison, compare->images ? pictures : NULL, error);
 	for (int l = 0; status == BP_OK && l < LIGHTING_COUNT; l++)
 		if (pictures[l].rgb) {
@@ -113,8 +98,7 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 			status = picture_encode_png(&pictures[l], &png[l], &bytes, error);
 			result.png_bytes[l] = status == BP_OK ? (uint32_t)bytes : 0;
 		}
-	result.confirmed = status == BP_OK && memcmp(digest, head.source.sha256, sizeof digest) == 0;
-	if (result.confirmed)
+	if (status == BP_OK && result.confirmed)
 		status = layers_confirm(compare, item, &head, &lattice, &result.comparison.fidelity, &table, error);
 	if (status == BP_OK)
 		status = result_pack(&result, png, record, record_bytes, error);

@@ -21,12 +21,6 @@
 /* A page of 512 pixels would be ten times as large and show nothing more. */
 enum { SIZE_DETAILS = SPHERE_SIZE, SIZE_SHEET = 40, EMBED_BYTES_MAX = 512 << 20, PROBLEMS_MAX = 1000 };
 
-/* The materials of the page while it is made. */
-struct making {
-	struct page page;
-	struct page_job job;
-};
-
 /* Where the index is damaged the materials before that are shown. */
 static bp_status items_read(struct page *page, bp_error *error)
 {
@@ -106,21 +100,19 @@ static void result_take(void *user, const struct job_result *result)
 	progress_show(page->done, page->count, (double)page->done / (double)page->count);
 }
 
-static bp_status materials_draw(struct making *making, bp_error *error)
+static bp_status materials_draw(struct page *page, bp_error *error)
 {
-	struct page *page = &making->page;
 	const struct page_options *options = page->options;
-	making->job =
-		(struct page_job){.archive = page->selection->archive,
-	                      .items = page->measured.item,
-	                      .details = page->details,
-	                      .measured = options->measured != NULL,
-	                      .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
+	page->job = (struct page_job){.archive = page->selection->archive,
+	                              .items = page->measured.item,
+	                              .details = page->details,
+	                              .measured = options->measured != NULL,
+	                              .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
 	const struct workers_options pool = {
-		.count = options->workers, .work = page_work, .work_user = &making->job, .result = result_take, .result_user = page};
+		.count = options->workers, .work = page_work, .work_user = &page->job, .result = result_take, .result_user = page};
 	struct lattice_dims dims;
 	/* before the fork, so that the workers share the plans' memory */
-	bp_status status = selection_dims(page->selection, &dims) ? comparison_plans_make(&making->job.plans, dims, error) : BP_OK;
+	bp_status status = selection_dims(page->selection, &dims) ? comparison_plans_make(&page->job.plans, dims, error) : BP_OK;
 	progress_start(!options->quiet);
 	if (status == BP_OK)
 		status = workers_run(&pool, page->measured.name, page->count, error);
@@ -188,9 +180,8 @@ static bp_status page_write(const struct page *page, struct output *output, bp_e
 	return status == BP_OK ? output_file_commit(&output->file, error) : status;
 }
 
-static void making_free(struct making *making)
+static void page_free(struct page *page)
 {
-	struct page *page = &making->page;
 	for (size_t n = 0; page->outcomes && n < page->count; n++) {
 		free(page->outcomes[n].html);
 		free(page->outcomes[n].fault);
@@ -199,7 +190,7 @@ static void making_free(struct making *making)
 	free(page->viewer);
 	byte_buffer_free(&page->verify);
 	measured_set_free(&page->measured);
-	comparison_plans_free(&making->job.plans);
+	comparison_plans_free(&page->job.plans);
 }
 
 /* Finds the measured files, and says where some are not there: the folder may be another one than was meant. */
@@ -220,9 +211,8 @@ static bp_status measured_find(struct page *page, const char *folder, bp_error *
 
 int page_run(const struct page_options *options, struct selection *selection)
 {
-	struct making making = {.page = {.options = options, .selection = selection}};
+	struct page made = {.options = options, .selection = selection}, *page = &made;
 	struct output output = {.file.fd = -1};
-	struct page *page = &making.page;
 	struct stat facts;
 	bp_error error;
 	page->details = selection->count <= PAGE_DETAILS_MAX;
@@ -239,7 +229,7 @@ int page_run(const struct page_options *options, struct selection *selection)
 		status = output_file_open(options->output, OUTPUT_REPLACE, &output.file, &error);
 	if (status == BP_OK) {
 		bp_archive_verify(selection->archive, 0, problem_note, page, NULL);
-		status = materials_draw(&making, &error);
+		status = materials_draw(page, &error);
 	}
 	const bool stopped = interrupt_came();
 	if (status == BP_OK && !stopped)
@@ -248,6 +238,6 @@ int page_run(const struct page_options *options, struct selection *selection)
 		report_error(NULL, NULL, &error);
 	output_file_discard(&output.file);
 	const bool whole = status == BP_OK && !page->failed && !page->problem_count && !selection->incomplete;
-	making_free(&making);
+	page_free(page);
 	return stopped ? interrupt_exit(options->output) : whole ? EXIT_OK : EXIT_FAILED;
 }

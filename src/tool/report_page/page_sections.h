@@ -19,6 +19,7 @@ struct page {
 	const struct page_options *options;
 	struct selection *selection;
 	struct measured_set measured;
+	struct page_job job; /* what workers know of it */
 	struct page_outcome *outcomes;
 	size_t count, done, failed;
 	bool details;

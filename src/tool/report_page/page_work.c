@@ -71,20 +71,18 @@ static bp_status decoded_draw(struct page_job *job, struct subject *subject, bp_
 /* The same beside the measured table. A file that cannot be read is told in the page, and the material is drawn alone. */
 static bp_status measured_draw(struct page_job *job, struct subject *subject, bp_error *error)
 {
-	struct holes holes;
 	bp_error reason;
-	bp_status status = source_item_read(subject->item->source, &job->cursor, &(struct merl_reading){.any_dims = true},
-	                                    &subject->lattice, &reason);
-	if (status == BP_OK)
-		status = lattice_take_holes(&subject->lattice, subject->head.options.zeros, &holes, &reason);
-	if (status == BP_OK)
+	bp_status status = measured_read(subject->item->source, &job->cursor, &subject->head, &subject->lattice, NULL, &reason);
+	const bool read = status == BP_OK;
+	if (read)
 		status =
 			comparison_measure(&job->plans, &subject->lattice, &subject->table, &subject->comparison, subject->spheres, &reason);
 	subject->measured = status == BP_OK;
 	subject->energy = subject->comparison.decoded;
 	if (status == BP_OK)
 		return BP_OK;
-	snprintf(subject->missing, sizeof subject->missing, "not compared: %s: %s", subject->item->source->path, reason.message);
+	snprintf(subject->missing, sizeof subject->missing, "not compared: %s%s%s", read ? subject->item->source->path : "",
+	         read ? ": " : "", reason.message);
 	for (int l = 0; l < LIGHTING_COUNT; l++)
 		picture_free(&subject->spheres[l]);
 	return status == BP_ERROR_MEMORY ? error_memory(error, 0) : decoded_draw(job, subject, error);
@@ -221,11 +219,11 @@ static bp_status slice_write(FILE *out, const struct subject *subject, uint32_t 
 static void layers_write(FILE *out, const struct subject *subject)
 {
 	const struct record_head *head = &subject->head;
-	html_table(out, "Layers: what loading up to each costs, and the error that is left", "layers", "bytes", "log RMSE",
+	html_table(out, "Layers: what loading up to each costs, and the error that is left", "layer", "bytes", "log RMSE",
 	           "below the horizon too", "cube-root RMSE", "largest relative error", NULL);
 	fputs("</tr></thead><tbody>", out);
 	for (uint32_t l = 0; l < head->layer_count; l++)
-		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.5f<td>%.3g</tr>", l + 1, head->layers[l].bytes,
+		fprintf(out, "<tr><th scope=row>%u<td>%u<td>%.5f<td>%.5f<td>%.5f<td>%.3g</tr>", l, head->layers[l].bytes,
 		        head->layers[l].fidelity.seen_log_rmse, head->layers[l].fidelity.log_rmse,
 		        head->layers[l].fidelity.cube_root_rmse, head->layers[l].fidelity.largest_relative);
 	fputs("</tbody></table>", out);

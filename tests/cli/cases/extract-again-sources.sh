@@ -1,4 +1,4 @@
-# Extracted files in a tar, compressed, in a zip; one or two workers; --update; another name, profile or budget; a manifest of the measured files.
+# Extracted files in a tar, compressed, in a zip; one or two workers; --update; another name (no longer: the budget may be full), profile or budget; a manifest of the measured files.
 brdfpack synth --lattice 24x20x36 all
 mkdir in && mv all/terracotta.binary all/wine-velvet.binary in
 kept() { tail -n 1 | grep -o '"materials": [0-9]*, "reused": [0-9]*, "kept": [0-9]*, "refused": [0-9]*'; }
@@ -14,10 +14,10 @@ again --update x && same
 build -q --budget 9000 -o again.bpk in
 again --update x && same
 again --update in && same
-mkdir y && cp x/terracotta.binary y/another-name.binary
+mkdir y && cp x/terracotta.binary y/other-name.binary
 again y
 brdfpack list again.bpk | sed -n 's/ *[0-9.]* *spectral.*//p'
-cmp <(brdfpack extract -C z --plain again.bpk && cat z/another-name.binary) <(brdfpack extract -C z --plain out.bpk && cat z/terracotta.binary) && echo "the same values"
+cmp <(brdfpack extract -C z --plain again.bpk && cat z/other-name.binary) <(brdfpack extract -C z --plain out.bpk && cat z/terracotta.binary) && echo "the same values"
 again --budget 8000 x
 build --max-error 0.01 --json -o again.bpk x | kept
 build --profile paper --json -o paper.bpk x | kept

@@ -15,6 +15,7 @@ cmp page.html again.html
 brdfpack report -q --light env --measured . -o one.html out.bpk beta
 grep -o '<figure class=light-[a-z]*>' one.html
 grep -o 'measured, decoded, difference ×10; [0-9]' one.html
+grep -o '<tbody><tr><th scope=row>0<td>' one.html # layers, counted as list does
 mkdir nothing
 brdfpack report -q --measured nothing -o alone.html out.bpk beta
 grep -o 'not compared: there is no measured file of that name' alone.html

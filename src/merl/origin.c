@@ -1,4 +1,4 @@
-#include "reciprocity.h"
+#include "origin.h"
 
 #include <math.h>
 
