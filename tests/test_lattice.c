@@ -257,11 +257,32 @@ static void the_limit_stays_between_0_and_5_degrees_whatever_is_valid(void **sta
 	lattice_free(&lattice);
 }
 
+static void the_largest_is_that_of_the_valid_cells(void **unused)
+{
+	(void)unused;
+	struct lattice l;
+	assert_int_equal(lattice_alloc((struct lattice_dims){4, 5, 6}, &l, NULL), BP_OK);
+	for (int c = 0; c < 3; c++)
+		for (size_t i = 0; i < 120; i++)
+			l.rgb[c][i] = (double)(i * 37 % 120) * (c == 1 ? 3 : 1);
+	for (size_t i = 0; i < 120; i++)
+		l.valid[i] = 0;
+	assert_true(lattice_largest(&l) == 0);
+	l.valid[7] = l.valid[90] = 1;
+	l.rgb[2][90] = 1e9;
+	l.rgb[0][91] = 1e12; /* not valid */
+	assert_true(lattice_largest(&l) == 1e9);
+	l.valid[90] = 0;
+	assert_true(lattice_largest(&l) == l.rgb[1][7]);
+	lattice_free(&l);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(dims_are_legal_from_4_to_1024_and_up_to_the_cell_limit),
 		cmocka_unit_test(illegal_dims_are_refused_and_leave_the_output_alone),
+		cmocka_unit_test(the_largest_is_that_of_the_valid_cells),
 		cmocka_unit_test(planes_are_aligned_and_apart_and_nothing_is_valid),
 		cmocka_unit_test(a_cell_is_valid_when_all_channels_are_finite_and_not_negative),
 		cmocka_unit_test(no_valid_value_is_above_the_most),

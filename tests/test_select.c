@@ -80,32 +80,11 @@ static void many_values_of_every_order_are_no_trouble(void **user)
 	free(sorted);
 }
 
-static void the_largest_is_that_of_the_valid_cells(void **unused)
-{
-	(void)unused;
-	struct lattice l;
-	assert_int_equal(lattice_alloc((struct lattice_dims){4, 5, 6}, &l, NULL), BP_OK);
-	for (int c = 0; c < 3; c++)
-		for (size_t i = 0; i < 120; i++)
-			l.rgb[c][i] = value_of(7, i, 120) * (c == 1 ? 3 : 1);
-	for (size_t i = 0; i < 120; i++)
-		l.valid[i] = 0;
-	assert_true(select_largest(&l) == 0);
-	l.valid[7] = l.valid[90] = 1;
-	l.rgb[2][90] = 1e9;
-	l.rgb[0][91] = 1e12; /* not valid */
-	assert_true(select_largest(&l) == 1e9);
-	l.valid[90] = 0;
-	assert_true(select_largest(&l) == l.rgb[1][7]);
-	lattice_free(&l);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_rank_of_every_order_is_found),
 		cmocka_unit_test(many_values_of_every_order_are_no_trouble),
-		cmocka_unit_test(the_largest_is_that_of_the_valid_cells),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,8 @@
 #include "select.h"
 
+#include <stdbool.h>
+#include <stdint.h>
+
 /*
  * Moves what comes before the pivot (smaller; or equal too) to the front of v[from..n-1] and returns where it ends. Every
  * value is exchanged, wanted or not: a branch on unsorted values is mispredicted every other time.
@@ -49,16 +52,4 @@ double select_kth(double *v, size_t n, size_t k)
 		left = equal;
 	}
 	return v[k];
-}
-
-double select_largest(const struct lattice *lattice)
-{
-	const size_t cells = lattice_cells(lattice->dims);
-	double largest = 0;
-
-	for (int c = 0; c < 3; c++)
-		for (size_t i = 0; i < cells; i++)
-			if (lattice->valid[i] && lattice->rgb[c][i] > largest)
-				largest = lattice->rgb[c][i];
-	return largest;
 }

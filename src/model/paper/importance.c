@@ -115,7 +115,7 @@ double importance_unit(const struct importance *m, const struct lattice *lattice
 	uint64_t state = 1;
 	int exponent;
 
-	frexp(select_largest(lattice), &exponent);
+	frexp(lattice_largest(lattice), &exponent);
 	const double scale = ldexp(1, exponent < -1000 ? 1000 : -exponent); /* the largest becomes about 1: no sum overflows */
 	for (int n = 0; n < PIXELS; n++) {
 		pixel[n] = 0;

@@ -88,7 +88,7 @@ double spectral_survey_unit(struct spectral_survey *sample, const struct lattice
 	const double upper = select_kth(v + half, last + 1 - half, high - half);
 	/* Seldom asked for: a pass over the table. */
 	const bool bright = lattice->most > 0 && median >= lattice->most * 0x1p-24 && median > 0;
-	const double largest = bright ? lattice->most : select_largest(lattice), least = largest * 0x1p-24;
+	const double largest = bright ? lattice->most : lattice_largest(lattice), least = largest * 0x1p-24;
 
 	if (largest == 0)
 		return 1;
