@@ -93,9 +93,10 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
 	@echo '$(FLAGS)' | cmp -s - $@ || echo '$(FLAGS)' > $@
 
-# Files named *_avx2.c are compiled for AVX2 and called only where the processor has it; on other machines they are never called.
+# Files named *_avx2.c and *_avx512.c are compiled for these and called only where the processor has them; elsewhere they never are.
 ifneq ($(filter x86_64-% i386-% i486-% i586-% i686-%,$(shell $(CC) -dumpmachine)),)
 $(BUILD)/%_avx2.o: ALL_CFLAGS += -mavx2
+$(BUILD)/%_avx512.o: ALL_CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vector-width=512
 endif
 # Link-time optimisation is for programs: the archive's internal names are made local in machine code, which -flto objects are not.
 ifneq ($(filter -flto%,$(CFLAGS)),)

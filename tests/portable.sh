@@ -40,6 +40,7 @@ portable() { # portable NAME COMPILER FLAG...: a program of the reader's sources
 	for source in "${sources[@]}"; do
 		extra=()
 		[[ $source != *_avx2.c || $compiler != cc ]] || extra=(-mavx2)
+		[[ $source != *_avx512.c || $compiler != cc ]] || extra=(-mavx512f -mavx512bw -mavx512dq -mavx512vl)
 		"$compiler" "${flags[@]}" -DBP_PORTABLE -ffunction-sections -fdata-sections "$@" "${extra[@]}" -c -o "$scratch/$name/${source//\//-}.o" "$source"
 	done
 	"$compiler" "$@" -std=c17 -Wl,--gc-sections -o "$scratch/$name/reader" -Isrc tests/reader_values.c "$scratch/$name"/*.o -lm "${libraries[@]}"

@@ -232,7 +232,7 @@ static void unlike_tables_and_empty_ones_are_refused(void **user)
 	pair_free(&q);
 }
 
-static void both_kernel_tables_give_the_same_bits(void **user)
+static void all_tables_of_loops_give_the_same_bits(void **user)
 {
 	(void)user;
 	if (!kernels_avx2_usable())
@@ -248,12 +248,17 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 			p.table.rgb[1][i] = (float)(p.truth.rgb[1][i] * 2.01);
 	}
 	for (size_t n = 0; n < 9 * 31 * 67; n += 1 + n / 3) {
-		struct fidelity_sums a[2] = {0}, b[2] = {0};
+		struct fidelity_sums a[2] = {0}, b[2] = {0}, c[2] = {0};
 		const struct fidelity_table to_a[2] = {{p.table.rgb[1], 0.5, &a[0]}, {p.table.rgb[0], 0.25, &a[1]}};
 		const struct fidelity_table to_b[2] = {{p.table.rgb[1], 0.5, &b[0]}, {p.table.rgb[0], 0.25, &b[1]}};
+		const struct fidelity_table to_c[2] = {{p.table.rgb[1], 0.5, &c[0]}, {p.table.rgb[0], 0.25, &c[1]}};
 		fidelity_kernels_plain.fidelity_slice(p.truth.rgb[1], p.truth.valid, hidden, cosine, n, to_a, 2);
 		fidelity_kernels_avx2.fidelity_slice(p.truth.rgb[1], p.truth.valid, hidden, cosine, n, to_b, 2);
 		assert_memory_equal(a, b, sizeof a);
+		if (!kernels_avx512_usable())
+			continue;
+		fidelity_kernels_avx512.fidelity_slice(p.truth.rgb[1], p.truth.valid, hidden, cosine, n, to_c, 2);
+		assert_memory_equal(a, c, sizeof a);
 	}
 	pair_free(&p);
 }
@@ -270,7 +275,7 @@ int main(void)
 		cmocka_unit_test(extreme_values_give_finite_figures),
 		cmocka_unit_test(an_error_beyond_all_numbers_is_the_largest_one),
 		cmocka_unit_test(unlike_tables_and_empty_ones_are_refused),
-		cmocka_unit_test(both_kernel_tables_give_the_same_bits),
+		cmocka_unit_test(all_tables_of_loops_give_the_same_bits),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "model/spectral/spectral_kernels.h"
 #include "random.h"
+#include "spectral_tables.h"
 
 enum { N = 203 };
 
@@ -19,39 +19,40 @@ static void random_floats(float *x, size_t n)
 		x[i] = (float)(uniform() - 0.5);
 }
 
-/* Both tables, or the plain one twice. */
-static const struct spectral_kernels *table(int n)
+/* What all tables gave is what the first gave. */
+static void assert_alike(const void *results, size_t bytes)
 {
-	return n && kernels_avx2_usable() ? &spectral_kernels_avx2 : &spectral_kernels_plain;
+	for (int n = 1; n < SPECTRAL_TABLES; n++)
+		assert_memory_equal(results, (const char *)results + (size_t)n * bytes, bytes);
 }
 
 static void logarithms_of_valid_cells_and_their_sum(void **unused)
 {
-	double b[N], factor = 512, sum[2];
+	double b[N], factor = 512, sum[SPECTRAL_TABLES];
 	uint8_t valid[N];
-	float out[2][N];
+	float out[SPECTRAL_TABLES][N];
 	(void)unused;
 	for (int i = 0; i < N; i++) {
 		b[i] = uniform() * (i % 7 ? 1 : 1e4);
 		valid[i] = uniform() < 0.8;
 	}
 	double want = 0;
-	for (int n = 0; n < 2; n++)
-		sum[n] = table(n)->spectral_logs(b, valid, N, factor, out[n]);
+	for (int n = 0; n < SPECTRAL_TABLES; n++)
+		sum[n] = spectral_table(n)->spectral_logs(b, valid, N, factor, out[n]);
 	for (int i = 0; i < N; i++) {
 		const double l = valid[i] ? log2(1 + factor * b[i]) : 0;
 		assert_true(fabs((double)out[0][i] - l) < 3e-6);
 		want += (double)out[0][i];
 	}
 	assert_true(fabs(sum[0] - want) < 1e-9);
-	assert_true(sum[0] == sum[1]);
-	assert_memory_equal(out[0], out[1], sizeof out[0]);
+	assert_alike(sum, sizeof sum[0]);
+	assert_alike(out, sizeof out[0]);
 }
 
 static void moments_weigh_large_coefficients_less(void **unused)
 {
 	static float x[3][N];
-	double want[6] = {0}, got[2][6] = {{0}};
+	double want[6] = {0}, got[SPECTRAL_TABLES][6] = {{0}};
 	(void)unused;
 	for (int f = 0; f < 3; f++)
 		random_floats(x[f], N);
@@ -61,26 +62,26 @@ static void moments_weigh_large_coefficients_less(void **unused)
 		for (int n = 0; n < 6; n++)
 			want[n] += w * product[n];
 	}
-	for (int n = 0; n < 2; n++)
-		table(n)->spectral_moments((const float *const[]){x[0], x[1], x[2]}, N, got[n]);
+	for (int n = 0; n < SPECTRAL_TABLES; n++)
+		spectral_table(n)->spectral_moments((const float *const[]){x[0], x[1], x[SPECTRAL_TABLES]}, N, got[n]);
 	for (int n = 0; n < 6; n++)
 		assert_true(fabs(got[0][n] - want[n]) < 1e-10);
-	assert_memory_equal(got[0], got[1], sizeof got[0]);
+	assert_alike(got, sizeof got[0]);
 }
 
 static void worths_are_those_of_their_formula(void **unused)
 {
 	static const struct spectral_light lights[] = {{0.03, 150}, {1, 3}, {3, 1}};
-	static double radiance[N], worth[2][N], logarithm[2][N];
+	static double radiance[N], worth[SPECTRAL_TABLES][N], logarithm[SPECTRAL_TABLES][N];
 	(void)unused;
 	for (int i = 0; i < N; i++)
 		radiance[i] = i % 100 ? pow(2, 40 * uniform() - 20) : 0;
 	for (size_t n = 0; n <= N; n += n < 20 ? 1 : 61)
-		for (int t = 0; t < 2; t++) {
+		for (int t = 0; t < SPECTRAL_TABLES; t++) {
 			for (size_t i = 0; i < n; i++)
 				logarithm[t][i] = radiance[i] + 0x1p-63;
-			table(t)->spectral_log2s(logarithm[t], n);
-			table(t)->spectral_worths(radiance, n, lights, 3, 0.3, worth[t]);
+			spectral_table(t)->spectral_log2s(logarithm[t], n);
+			spectral_table(t)->spectral_worths(radiance, n, lights, 3, 0.3, worth[t]);
 		}
 	for (int i = 0; i < N; i++) {
 		double want = 0;
@@ -91,13 +92,13 @@ static void worths_are_those_of_their_formula(void **unused)
 		assert_true(fabs(worth[0][i] - want) <= 1e-12 * want);
 		assert_true(fabs(logarithm[0][i] - log2(radiance[i] + 0x1p-63)) < 1e-13);
 	}
-	assert_memory_equal(worth[0], worth[1], sizeof worth[0]);
-	assert_memory_equal(logarithm[0], logarithm[1], sizeof logarithm[0]);
+	assert_alike(worth, sizeof worth[0]);
+	assert_alike(logarithm, sizeof logarithm[0]);
 }
 
 static void a_filled_cell_becomes_the_mean_of_its_neighbours(void **unused)
 {
-	float x[2][N], old[N], beside[4][N], filled[N];
+	float x[SPECTRAL_TABLES][N], old[N], beside[4][N], filled[N];
 	(void)unused;
 	for (int i = 0; i < N; i++)
 		filled[i] = uniform() < 0.5 ? 1 : 0;
@@ -105,10 +106,10 @@ static void a_filled_cell_becomes_the_mean_of_its_neighbours(void **unused)
 		random_floats(old, N);
 		for (int n = 0; n < 4; n++)
 			random_floats(beside[n], N);
-		for (int n = 0; n < 2; n++) {
+		for (int n = 0; n < SPECTRAL_TABLES; n++) {
 			memcpy(x[n], old, sizeof old);
-			table(n)->spectral_smooth(x[n], filled, (const float *const[]){beside[0], beside[1], beside[2], beside[3]}, length,
-			                          0.25f, -0.5f);
+			spectral_table(n)->spectral_smooth(x[n], filled, (const float *const[]){beside[0], beside[1], beside[2], beside[3]},
+			                                   length, 0.25f, -0.5f);
 		}
 		for (size_t i = 0; i < N; i++) {
 			const double before = i ? (double)old[i - 1] : 0.25, after = i + 1 < length ? (double)old[i + 1] : -0.5;
@@ -117,20 +118,20 @@ static void a_filled_cell_becomes_the_mean_of_its_neighbours(void **unused)
 			                    12;
 			assert_true(i < length && filled[i] > 0 ? fabs((double)x[0][i] - mean) < 1e-6 : x[0][i] == old[i]);
 		}
-		assert_memory_equal(x[0], x[1], sizeof old);
+		assert_alike(x, sizeof old);
 	}
 }
 
 static void a_row_unfolds_about_its_middle(void **unused)
 {
-	float sum[N], difference[N], out[2][N];
+	float sum[N], difference[N], out[SPECTRAL_TABLES][N];
 	(void)unused;
 	random_floats(sum, N);
 	random_floats(difference, N);
 	for (size_t n = 1; n < N; n++)
-		for (int t = 0; t < 2; t++) {
+		for (int t = 0; t < SPECTRAL_TABLES; t++) {
 			memset(out[t], 0, sizeof out[t]);
-			table(t)->span_unfold(sum, difference, n, out[t]);
+			spectral_table(t)->span_unfold(sum, difference, n, out[t]);
 			for (size_t k = 0; k < N; k++)
 				assert_true(out[t][k] == (k >= n                ? 0
 				                          : n % 2 && k == n / 2 ? sum[k]
@@ -142,7 +143,7 @@ static void a_row_unfolds_about_its_middle(void **unused)
 static void coefficients_are_drawn_to_0_by_the_noise_around_them(void **unused)
 {
 	enum { STRIDE = N + 2 };
-	static float square[3][3 * STRIDE], x[2][N], old[N], factor[N];
+	static float square[3][3 * STRIDE], x[SPECTRAL_TABLES][N], old[N], factor[N];
 	const float threshold = 0.8f;
 	(void)unused;
 	random_floats(old, N);
@@ -152,10 +153,10 @@ static void coefficients_are_drawn_to_0_by_the_noise_around_them(void **unused)
 		for (int s = 0; s < 3; s++)
 			for (int q = 0; q < N; q++)
 				square[r][s * STRIDE + q + 1] = r == 1 && s == 1 ? old[q] * old[q] : (float)(0.2 * uniform() * uniform());
-	for (int n = 0; n < 2; n++) {
+	for (int n = 0; n < SPECTRAL_TABLES; n++) {
 		memcpy(x[n], old, sizeof old);
-		table(n)->spectral_shrink(x[n], (const float *const[]){square[0] + 1, square[1] + 1, square[2] + 1}, STRIDE, factor,
-		                          threshold, N);
+		spectral_table(n)->spectral_shrink(x[n], (const float *const[]){square[0] + 1, square[1] + 1, square[2] + 1}, STRIDE,
+		                                   factor, threshold, N);
 	}
 	for (int q = 0; q < N; q++) {
 		double energy = q ? 0.5 * pow((double)old[q - 1], 2) : 0;
@@ -166,13 +167,13 @@ static void coefficients_are_drawn_to_0_by_the_noise_around_them(void **unused)
 		const double keep = fmax(0, 1 - (double)threshold * (double)factor[q] / energy);
 		assert_true(fabs((double)x[0][q] - (double)old[q] * keep) < 1e-5);
 	}
-	assert_memory_equal(x[0], x[1], sizeof old);
+	assert_alike(x, sizeof old);
 }
 
 static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 {
 	enum { ROOM = N + 5 };
-	static float field[3][N], rgb[2][3][ROOM];
+	static float field[3][N], rgb[SPECTRAL_TABLES][3][ROOM];
 	const float base[3] = {2, 0, -9}, rotation[3][3] = {{0.6f, 0.8f, 0}, {-0.8f, 0.6f, 0}, {0, 0, 1}}, most = 33;
 	(void)unused;
 	for (int f = 0; f < 3; f++)
@@ -180,9 +181,9 @@ static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 			field[f][i] = (float)(8 * uniform() - 4);
 	field[0][6] = 1e30f;
 	for (size_t width = 1; width <= N; width += 101)
-		for (int n = 0; n < 2; n++)
-			table(n)->spectral_values((const float *const[]){field[0], field[1], field[2]}, width, base, rotation, most,
-			                          (float *const[]){rgb[n][0], rgb[n][1], rgb[n][2]});
+		for (int n = 0; n < SPECTRAL_TABLES; n++)
+			spectral_table(n)->spectral_values((const float *const[]){field[0], field[1], field[2]}, width, base, rotation, most,
+			                                   (float *const[]){rgb[n][0], rgb[n][1], rgb[n][2]});
 	for (int c = 0; c < 3; c++)
 		for (int k = 0; k < ROOM; k++) {
 			const float got = rgb[0][c][k];
@@ -197,7 +198,7 @@ static void values_are_0_at_and_below_the_logarithms_of_0(void **unused)
 			assert_true(fabs((double)got - (exp2(l) - 1)) <= 1e-5 * exp2(l));
 			assert_true(l > 0 || got == 0);
 		}
-	assert_memory_equal(rgb[0], rgb[1], sizeof rgb[0]);
+	assert_alike(rgb, sizeof rgb[0]);
 }
 
 /* Fours of rows and what is left of them; of these 48 columns at once and what is left: the sum in ascending order, nothing beside it. */
@@ -209,11 +210,11 @@ static void products_of_rows_with_a_matrix(void **unused)
 
 	random_floats(in, ROWS * IN);
 	random_floats(matrix, COUNT * 144);
-	for (int k = 0; k < 2; k++)
+	for (int k = 0; k < SPECTRAL_TABLES; k++)
 		for (size_t rows = 0; rows <= ROWS; rows++)
 			for (size_t columns = 16; columns <= 144; columns += 16) {
 				memset(out, 0, sizeof out);
-				table(k)->cosine_product(in, IN, rows, COUNT, matrix, columns, out, OUT);
+				spectral_table(k)->cosine_product(in, IN, rows, COUNT, matrix, columns, out, OUT);
 				for (size_t r = 0; r <= ROWS; r++)
 					for (size_t c = 0; c < OUT; c++) {
 						volatile float sum = 0; /* every step rounded */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clones.h"
 #include "error.h"
 #include "memory.h"
 
@@ -90,7 +91,7 @@ void expansion_free(struct expansion *expansion)
 enum { CELL_NEGATIVE = 1, CELL_NONFINITE = 2 };
 
 /* The largest of some values >= 0, or `largest` if that is larger; in lanes, which vectorise. */
-static double block_largest(const double *v, size_t count, double largest)
+static ALWAYS_INLINE double block_largest(const double *v, size_t count, double largest)
 {
 	enum { LANES = 16 };
 	double lane[LANES];
@@ -107,7 +108,7 @@ static double block_largest(const double *v, size_t count, double largest)
 	return largest;
 }
 
-double lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state)
+AVX2_CLONE double lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state)
 {
 	/* In blocks with flags as wide as the values, so that both loops vectorise. */
 	enum { BLOCK = 256 };

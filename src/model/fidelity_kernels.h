@@ -30,6 +30,6 @@ struct fidelity_kernels {
 	                       const struct fidelity_table *tables, size_t count);
 };
 
-KERNELS_OF(fidelity)
+KERNELS_OF_THREE(fidelity)
 
 #endif

@@ -87,29 +87,31 @@ static inline
 		for (size_t l = 0; l < FIDELITY_BLOCK; l++)
 			t->inverse[l] = 1 / (t->near[l] > 0 ? t->b[l] : 1);
 	t->has_inverse = true;
-	for (size_t l = 0; l < FIDELITY_BLOCK; l += 4) {
-		const lanes4 d = LANES_LOAD(difference + l), shifted = LANES_LOAD(t->shifted + l);
-		const lanes4 s = d / (shifted + shifted + d), z = s * s;
-		lanes4 p = z * LANES_ALL(0.41286660545526166) + LANES_ALL(0.57707758172130574);
-		p = p * z + LANES_ALL(0.96179669401644918);
-		p = p * z + LANES_ALL(2.8853900817779237);
+	for (size_t l = 0; l < FIDELITY_BLOCK; l += WIDE) {
+		const lanes_wide d = WIDE_LOAD(difference + l), shifted = WIDE_LOAD(t->shifted + l);
+		const lanes_wide s = d / (shifted + shifted + d), z = s * s;
+		lanes_wide p = z * WIDE_ALL(0.41286660545526166) + WIDE_ALL(0.57707758172130574);
+		p = p * z + WIDE_ALL(0.96179669401644918);
+		p = p * z + WIDE_ALL(2.8853900817779237);
 		p *= s;
 		p *= p;
-		logs += p;
-		if (any_hidden)
-			hidden += p * LANES_LOAD(t->hidden + l);
+		WIDE_ADD_TO(logs, p);
+		if (any_hidden) {
+			const lanes_wide unseen = p * WIDE_LOAD(t->hidden + l);
+			WIDE_ADD_TO(hidden, unseen);
+		}
 
 		/* Even and odd powers apart: half as long a chain. */
-		const lanes4 r = d * LANES_LOAD(t->inverse + l), q = r * r;
-		lanes4 even = q * LANES_ALL(0.013591770827014168) + LANES_ALL(0.019000804152989052);
-		lanes4 odd = q * LANES_ALL(-0.015937536993844745) - LANES_ALL(0.023471728782429886);
-		even = even * q + LANES_ALL(0.03017832700333542);
-		odd = odd * q - LANES_ALL(0.041152263703458002);
-		even = even * q + LANES_ALL(0.06172839506145647);
-		odd = odd * q - LANES_ALL(0.11111111111101468);
-		even = even * q + LANES_ALL(0.33333333333333337);
-		const lanes4 cube = (even + odd * r) * (r * LANES_LOAD(t->root + l));
-		cubes += cube * cube;
+		const lanes_wide r = d * WIDE_LOAD(t->inverse + l), q = r * r;
+		lanes_wide even = q * WIDE_ALL(0.013591770827014168) + WIDE_ALL(0.019000804152989052);
+		lanes_wide odd = q * WIDE_ALL(-0.015937536993844745) - WIDE_ALL(0.023471728782429886);
+		even = even * q + WIDE_ALL(0.03017832700333542);
+		odd = odd * q - WIDE_ALL(0.041152263703458002);
+		even = even * q + WIDE_ALL(0.06172839506145647);
+		odd = odd * q - WIDE_ALL(0.11111111111101468);
+		even = even * q + WIDE_ALL(0.33333333333333337);
+		const lanes_wide cube = (even + odd * r) * (r * WIDE_LOAD(t->root + l)), square = cube * cube;
+		WIDE_ADD_TO(cubes, square);
 	}
 	to->logs = logs;
 	to->cubes = cubes;

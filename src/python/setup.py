@@ -12,6 +12,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 CARRIED = os.path.join(HERE, "tree")  # what sdist takes along: the Makefile and the library's sources, as in a checkout
 SRC = os.path.join(CARRIED, "src") if os.path.isdir(CARRIED) else os.path.dirname(HERE)
 WINGS = ("", "rgl", "merl", "model", "model/*", "codec", "codec/*", "archive")
+# of files that end so, as the Makefile has them
+WIDE = {"_avx2.c": ["-mavx2"],
+        "_avx512.c": ["-mavx512f", "-mavx512bw", "-mavx512dq", "-mavx512vl", "-mprefer-vector-width=512"]}
 FLAGS = ["-std=c17", "-O3", "-D_GNU_SOURCE", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden",
          "-ffunction-sections", "-fdata-sections"]
 
@@ -40,7 +43,7 @@ class build_library_too(build_ext):
     def build_extension(self, ext):
         objects = []
         for path in library_sources() + [os.path.join(HERE, "strided.c")]:
-            flags = FLAGS + (["-mavx2"] if path.endswith("_avx2.c") else [])
+            flags = FLAGS + next((WIDE[end] for end in WIDE if path.endswith(end)), [])
             objects += self.compiler.compile([path], output_dir=self.build_temp, include_dirs=[SRC], extra_postargs=flags)
         ext.extra_objects = objects
         ext.depends = objects  # or a second build in the same folder would keep the first one's extension

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clones.h"
 #include "error.h"
 #include "memory.h"
 #include "model/math/fast_math.h"
@@ -13,7 +14,7 @@ static const float LEAST = 0.45f;           /* of a step: what may become 1 in t
 static const float CANDIDATES_FROM = 0.85f; /* of the least coefficient that may have a level */
 
 /* Is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
-static inline int any_above(const float *x, uint32_t least_bits)
+static ALWAYS_INLINE int any_above(const float *x, uint32_t least_bits)
 {
 	uint32_t any = 0, bits[LANES];
 	memcpy(bits, x, sizeof bits);
@@ -45,7 +46,7 @@ static bp_status lanes_look(struct planes *p, uint32_t slot, uint32_t place, con
 }
 
 /* All coefficients from `least` on. */
-static bp_status candidates_find(struct planes *p, float *const coefficient[3], float least, bp_error *error)
+AVX2_CLONE static bp_status candidates_find(struct planes *p, float *const coefficient[3], float least, bp_error *error)
 {
 	const uint32_t lanes = p->dims.phi_d, field = (lanes + 4) * p->bands.blocks;
 	bp_status status = BP_OK;

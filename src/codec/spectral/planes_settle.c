@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clones.h"
 #include "planes_row.h"
 
 /* The blocks that hold what is around a block's cells, but for the block itself. */
@@ -14,7 +15,7 @@ struct surroundings {
 	const uint8_t *before2, *before, *after, *after2, *other[2];
 };
 
-static inline cells8 cells_widen(const uint8_t *from)
+static ALWAYS_INLINE cells8 cells_widen(const uint8_t *from)
 {
 	typedef uint8_t bytes8 __attribute__((vector_size(BLOCK_EDGE)));
 	bytes8 v;
@@ -26,7 +27,7 @@ static inline cells8 cells_widen(const uint8_t *from)
  * For each cell of a block: neighbours in the block and the nearest harmonics and other fields once, the harmonics of its own
  * parity twice.
  */
-static void sums_around(const struct level_block *block, const struct surroundings *s, uint16_t sum[BLOCK_CELLS])
+static ALWAYS_INLINE void sums_around(const struct level_block *block, const struct surroundings *s, uint16_t sum[BLOCK_CELLS])
 {
 	uint16_t ring[BLOCK_EDGE + 2][VIEW_STRIDE] = {{0}};
 	for (uint32_t y = 0; y < BLOCK_EDGE; y++) {
@@ -53,8 +54,8 @@ struct tally {
 };
 
 /* The block's candidates as cells of the trellis; returns how many. */
-static uint32_t block_list(const struct level_block *block, uint32_t slot, const struct surroundings *s,
-                           const uint8_t class_of[TRELLIS_SUMS], struct trellis_cell *cells)
+static ALWAYS_INLINE uint32_t block_list(const struct level_block *block, uint32_t slot, const struct surroundings *s,
+                                         const uint8_t class_of[TRELLIS_SUMS], struct trellis_cell *cells)
 {
 	uint16_t sum[BLOCK_CELLS];
 	uint32_t n = 0;
@@ -85,7 +86,7 @@ static void cell_settle(struct planes *p, const struct trellis_cell *cell, struc
 }
 
 /* The planes that a block needs. */
-static uint8_t block_top(const struct level_block *block)
+static ALWAYS_INLINE uint8_t block_top(const struct level_block *block)
 {
 	uint32_t sizes = 0;
 	for (uint32_t k = 0; k < BLOCK_CELLS; k++)
@@ -94,7 +95,7 @@ static uint8_t block_top(const struct level_block *block)
 }
 
 /* The candidates of a harmonic, block by block in the order of coding; block0: of the harmonic's blocks. */
-static uint32_t harmonic_list(struct planes *p, uint32_t f, size_t block0, const uint8_t class_of[TRELLIS_SUMS])
+AVX2_CLONE static uint32_t harmonic_list(struct planes *p, uint32_t f, size_t block0, const uint8_t class_of[TRELLIS_SUMS])
 {
 	const ptrdiff_t next = (ptrdiff_t)p->bands.blocks;
 	uint32_t count = 0;
@@ -114,7 +115,7 @@ static uint32_t harmonic_list(struct planes *p, uint32_t f, size_t block0, const
 	return count;
 }
 
-static void harmonic_tops(struct planes *p, uint32_t f, size_t block0)
+AVX2_CLONE static void harmonic_tops(struct planes *p, uint32_t f, size_t block0)
 {
 	for (uint32_t b = 0; b < p->bands.count; b++) {
 		const struct band *band = &p->bands.band[b];

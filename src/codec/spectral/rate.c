@@ -2,13 +2,14 @@
 
 #include <math.h>
 
+#include "clones.h"
 #include "model/math/fast_math.h"
 
 enum { BIN_SHIFT = 23 - 4 }; /* of a float's bits: RATE_PER_OCTAVE = 2^4 */
 
 static inline uint32_t size_bits(float coefficient) { return bits_of_float(coefficient) & 0x7fffffff; }
 
-void rate_measure(const struct spectral_model *model, struct lattice_dims d, struct rate *out)
+AVX2_CLONE void rate_measure(const struct spectral_model *model, struct lattice_dims d, struct rate *out)
 {
 	const size_t rows = (size_t)d.theta_h * d.theta_d, cells = rows * d.phi_d;
 	uint32_t bins[RATE_BINS] = {0};

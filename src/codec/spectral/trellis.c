@@ -3,6 +3,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "clones.h"
+
 enum { CLASSES = 19 };
 static const float NEVER = 1e30f;
 
@@ -32,7 +34,7 @@ void trellis_classes(uint8_t class_of[TRELLIS_SUMS])
 }
 
 /* Of the two levels worth a look in a quantiser, one even and one odd, the lower one. */
-static inline uint32_t lower_level(const struct trellis_cell *cell, uint32_t quantiser)
+static ALWAYS_INLINE uint32_t lower_level(const struct trellis_cell *cell, uint32_t quantiser)
 {
 	if (quantiser)
 		return cell->level + (cell->beyond >= 0.5f + CENTRE);
@@ -42,14 +44,17 @@ static inline uint32_t lower_level(const struct trellis_cell *cell, uint32_t qua
 typedef float lanes4 __attribute__((vector_size(16)));
 typedef int32_t mask4 __attribute__((vector_size(16)));
 
-static inline lanes4 lanes_where(mask4 where, lanes4 a, lanes4 b) { return (lanes4)(((mask4)a & where) | ((mask4)b & ~where)); }
-static inline lanes4 lanes_all(float x) { return (lanes4){x, x, x, x}; }
+static ALWAYS_INLINE lanes4 lanes_where(mask4 where, lanes4 a, lanes4 b)
+{
+	return (lanes4)(((mask4)a & where) | ((mask4)b & ~where));
+}
+static ALWAYS_INLINE lanes4 lanes_all(float x) { return (lanes4){x, x, x, x}; }
 
 /*
  * What each choice costs: 0; an even and an odd level of the first quantiser, then of the second. Where the size is far from 0,
  * bits are counted from those of the size itself, so that sums stay small.
  */
-static inline lanes4 cell_costs(const struct trellis_cell *cell, float *zero)
+static ALWAYS_INLINE lanes4 cell_costs(const struct trellis_cell *cell, float *zero)
 {
 	const int32_t low = (int32_t)lower_level(cell, 0), low_second = (int32_t)lower_level(cell, 1), own = (int32_t)cell->level;
 	const mask4 level = {low + (low & 1), low + (~low & 1), low_second + (low_second & 1), low_second + (~low_second & 1)};
@@ -65,10 +70,10 @@ static inline lanes4 cell_costs(const struct trellis_cell *cell, float *zero)
 /* The states before a level that is even, or odd, by the state behind it: dependent_next turned round. */
 static const uint8_t BEFORE[2][DEPENDENT_STATES] = {{0, 2, 6, 5, 1, 3, 4, 7}, {2, 0, 5, 6, 3, 1, 7, 4}};
 
-static inline lanes4 least(lanes4 a, lanes4 b) { return lanes_where(a < b, a, b); }
+static ALWAYS_INLINE lanes4 least(lanes4 a, lanes4 b) { return lanes_where(a < b, a, b); }
 
 /* Each state's least cost so far, from each state's before the cell. */
-static inline void states_step(lanes4 *first, lanes4 *second, lanes4 level, float zero)
+static ALWAYS_INLINE void states_step(lanes4 *first, lanes4 *second, lanes4 level, float zero)
 {
 	const lanes4 even = __builtin_shufflevector(level, level, 0, 0, 2, 2),
 				 odd = __builtin_shufflevector(level, level, 1, 1, 3, 3);
@@ -81,7 +86,7 @@ static inline void states_step(lanes4 *first, lanes4 *second, lanes4 level, floa
 }
 
 /* The cell's choice on the best way to `state`; returns the state before it. */
-static inline uint32_t cell_choose(struct trellis_cell *cell, const struct trellis_costs *before, uint32_t state)
+static ALWAYS_INLINE uint32_t cell_choose(struct trellis_cell *cell, const struct trellis_costs *before, uint32_t state)
 {
 	uint32_t from = state, quantiser = 0, level = 0;
 	float best = before->of[state] + before->zero;
@@ -102,7 +107,7 @@ static inline uint32_t cell_choose(struct trellis_cell *cell, const struct trell
 	return from;
 }
 
-void trellis_choose(struct trellis_cell *cells, uint32_t count, struct trellis_costs *costs)
+AVX2_CLONE void trellis_choose(struct trellis_cell *cells, uint32_t count, struct trellis_costs *costs)
 {
 	lanes4 first = {0, NEVER, NEVER, NEVER}, second = {NEVER, NEVER, NEVER, NEVER};
 	uint32_t state = 0;

@@ -1,10 +1,11 @@
 #include "kernels.h"
 
-int kernels_avx2_usable(void)
-{
 #if (defined(__x86_64__) || defined(__i386__)) && !defined(BRDFPACK_PLAIN_KERNELS) /* for tests: as without AVX2 */
-	return __builtin_cpu_supports("avx2") != 0;
+#define HAS(feature) (__builtin_cpu_supports(feature) != 0)
 #else
-	return 0;
+#define HAS(feature) 0
 #endif
-}
+
+int kernels_avx2_usable(void) { return HAS("avx2"); }
+
+int kernels_avx512_usable(void) { return HAS("avx512f") && HAS("avx512bw") && HAS("avx512dq") && HAS("avx512vl"); }

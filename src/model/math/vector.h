@@ -28,6 +28,22 @@ typedef float floats8_unaligned __attribute__((vector_size(32), aligned(4), may_
 #define FLOATS8_STORE(p, v) (*(floats8_unaligned *)(p) = (v))
 #define LANES_ALL(x) ((lanes4){(x), (x), (x), (x)})
 
+/* Doubles as wide as the target's vectors, where eight fit. Their sums are of four lanes all the same. */
+#ifdef __AVX512F__
+typedef double lanes_wide __attribute__((vector_size(64)));
+typedef double lanes_wide_unaligned __attribute__((vector_size(64), aligned(8), may_alias));
+#define WIDE_ALL(x) ((lanes_wide){(x), (x), (x), (x), (x), (x), (x), (x)})
+#define WIDE_ADD_TO(sum, v) \
+	((sum) += __builtin_shufflevector((v), (v), 0, 1, 2, 3), (sum) += __builtin_shufflevector((v), (v), 4, 5, 6, 7))
+#else
+typedef lanes4 lanes_wide;
+typedef lanes4_unaligned lanes_wide_unaligned;
+#define WIDE_ALL(x) LANES_ALL(x)
+#define WIDE_ADD_TO(sum, v) ((sum) += (v))
+#endif
+enum { WIDE = sizeof(lanes_wide) / sizeof(double) };
+#define WIDE_LOAD(p) ((lanes_wide)(*(const lanes_wide_unaligned *)(p)))
+
 static inline double lanes_sum(const lanes4 *v) { return ((*v)[0] + (*v)[1]) + ((*v)[2] + (*v)[3]); }
 
 #endif

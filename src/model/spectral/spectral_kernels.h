@@ -86,6 +86,6 @@ struct spectral_kernels {
 	                        double ambient, double *out);
 };
 
-KERNELS_OF(spectral)
+KERNELS_OF_THREE(spectral)
 
 #endif
