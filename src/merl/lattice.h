@@ -60,8 +60,6 @@ struct lattice {
 };
 
 bool lattice_dims_legal(struct lattice_dims dims);
-/* BP_OK, or BP_ERROR_LIMIT with the extents and what is legal. */
-bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error);
 size_t lattice_cells(struct lattice_dims dims);
 static inline bool lattice_dims_equal(struct lattice_dims a, struct lattice_dims b)
 {
@@ -72,7 +70,7 @@ static inline size_t lattice_index(struct lattice_dims dims, uint32_t i, uint32_
 	return k + (size_t)dims.phi_d * (j + (size_t)dims.theta_d * i);
 }
 
-/* Nothing valid, the planes not set: whoever allocates fills all of them. */
+/* Nothing valid, the planes not set: whoever allocates fills all of them. BP_ERROR_LIMIT where the extents are not legal. */
 bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error);
 void lattice_free(struct lattice *lattice); /* a zeroed struct is allowed, as in expansion_free */
 

@@ -11,10 +11,8 @@
 bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error)
 {
 	struct model *model;
+	bp_status status;
 
-	bp_status status = lattice_dims_check(lattice->dims, error);
-	if (status)
-		return status;
 	if (!lattice->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: every value is negative, NaN or infinite");
 	model = calloc(1, sizeof *model);
