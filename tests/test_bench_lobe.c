@@ -69,10 +69,10 @@ static void edwards_gives_the_values_worked_out_by_hand(void **state)
 static void the_cells_angles_agree_with_the_directions(void **state)
 {
 	const struct lattice_dims dims = {90, 90, 180};
-	struct centre_tables tables;
+	struct lattice_cosines tables;
 	(void)state;
 
-	centre_tables_fill(dims, &tables);
+	lattice_centres(dims, &tables);
 	for (int n = 0; n < 3; n++) {
 		/* 10, 25, 50 degrees lie at 30, 47.43, 67.08 */
 		const double at[3][3] = {{30, 30, 60}, {47.43416490252569, 50, 90}, {67.08203932499369, 20, 30}};

@@ -221,10 +221,10 @@ bp_status lobe_expand(const void *opaque, struct expansion *out, bp_error *error
 {
 	const struct lobe_state *state = opaque;
 	const struct lattice_dims dims = out->dims;
-	struct centre_tables tables;
+	struct lattice_cosines tables;
 
 	(void)error;
-	centre_tables_fill(dims, &tables);
+	lattice_centres(dims, &tables);
 	out->unit = 1;
 	for (uint32_t i = 0; i < dims.theta_h; i++)
 		for (uint32_t j = 0; j < dims.theta_d; j++)

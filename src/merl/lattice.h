@@ -95,6 +95,19 @@ void lattice_scan_finish(struct lattice *lattice);
 /* Cosine and sine of t quarter turns, t in [0, 1]: exact at 0 and 1, within 2e-16, the same on every machine. */
 void quarter_cos_sin(double t, double *cosine, double *sine);
 
+/* Cosines and sines of one place in each cell along theta_h, theta_d and phi_d: 40 KB, which the stack bears. */
+struct lattice_cosines {
+	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX];
+	double cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX];
+	double cos_p[LATTICE_EXTENT_MAX];
+};
+
+/* Of the centres. */
+void lattice_centres(struct lattice_dims dims, struct lattice_cosines *out);
+
+/* Of the lower corners, but |cos phi_d| at its least in the cell: together they give the largest smaller cosine in it. */
+void lattice_highest(struct lattice_dims dims, struct lattice_cosines *out);
+
 /*
  * The horizon: which cells extraction writes as negative values.
  *
