@@ -6,6 +6,15 @@
 #include <zlib.h>
 #endif
 
+union float_bits {
+	float value;
+	uint32_t bits;
+};
+union double_bits {
+	double value;
+	uint64_t bits;
+};
+
 struct byte_reader byte_reader_over(const void *bytes, size_t count)
 {
 	return (struct byte_reader){.bytes = bytes, .count = count};
@@ -58,21 +67,8 @@ uint16_t read_u16(struct byte_reader *reader) { return (uint16_t)read_little_end
 uint32_t read_u32(struct byte_reader *reader) { return (uint32_t)read_little_endian(reader, 4); }
 uint64_t read_u64(struct byte_reader *reader) { return read_little_endian(reader, 8); }
 
-float read_f32(struct byte_reader *reader)
-{
-	uint32_t bits = read_u32(reader);
-	float value;
-	memcpy(&value, &bits, sizeof value);
-	return value;
-}
-
-double read_f64(struct byte_reader *reader)
-{
-	uint64_t bits = read_u64(reader);
-	double value;
-	memcpy(&value, &bits, sizeof value);
-	return value;
-}
+float read_f32(struct byte_reader *reader) { return (union float_bits){.bits = read_u32(reader)}.value; }
+double read_f64(struct byte_reader *reader) { return (union double_bits){.bits = read_u64(reader)}.value; }
 
 static uint8_t *buffer_extend(struct byte_buffer *buffer, size_t count)
 {
@@ -107,12 +103,19 @@ void write_zeros(struct byte_buffer *buffer, size_t count)
 		memset(to, 0, count);
 }
 
+static void little_endian_store(uint8_t *at, uint64_t value, unsigned count)
+{
+	for (unsigned i = 0; i < count; i++)
+		at[i] = (uint8_t)(value >> 8 * i);
+}
+
+void store_u32(uint8_t *at, uint32_t value) { little_endian_store(at, value, 4); }
+
 static void write_little_endian(struct byte_buffer *buffer, uint64_t value, unsigned count)
 {
 	uint8_t *to = buffer_extend(buffer, count);
 	if (to)
-		for (unsigned i = 0; i < count; i++)
-			to[i] = (uint8_t)(value >> 8 * i);
+		little_endian_store(to, value, count);
 }
 
 void write_u8(struct byte_buffer *buffer, uint8_t value) { write_little_endian(buffer, value, 1); }
@@ -120,19 +123,8 @@ void write_u16(struct byte_buffer *buffer, uint16_t value) { write_little_endian
 void write_u32(struct byte_buffer *buffer, uint32_t value) { write_little_endian(buffer, value, 4); }
 void write_u64(struct byte_buffer *buffer, uint64_t value) { write_little_endian(buffer, value, 8); }
 
-void write_f32(struct byte_buffer *buffer, float value)
-{
-	uint32_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	write_u32(buffer, bits);
-}
-
-void write_f64(struct byte_buffer *buffer, double value)
-{
-	uint64_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	write_u64(buffer, bits);
-}
+void write_f32(struct byte_buffer *buffer, float value) { write_u32(buffer, (union float_bits){.value = value}.bits); }
+void write_f64(struct byte_buffer *buffer, double value) { write_u64(buffer, (union double_bits){.value = value}.bits); }
 
 void byte_buffer_free(struct byte_buffer *buffer)
 {
@@ -160,9 +152,3 @@ uint32_t bytes_crc32_more(uint32_t crc, const void *bytes, size_t count)
 }
 
 uint32_t bytes_crc32(const void *bytes, size_t count) { return bytes_crc32_more(0, count ? bytes : (const void *)"", count); }
-
-void store_u32(uint8_t *at, uint32_t value)
-{
-	for (unsigned i = 0; i < 4; i++)
-		at[i] = (uint8_t)(value >> 8 * i);
-}

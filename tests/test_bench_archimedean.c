@@ -154,7 +154,7 @@ static void recovers(enum archimedean_family family, const struct own own[3])
 	struct expansion table;
 	struct lattice lattice;
 	const struct bench_material material = {.name = "own", .lattice = &lattice};
-	void *state;
+	struct fitted fitted;
 
 	expand(truth, &table);
 	assert_int_equal(lattice_alloc(SMALL, &lattice, NULL), BP_OK);
@@ -163,8 +163,8 @@ static void recovers(enum archimedean_family family, const struct own own[3])
 			lattice.rgb[c][cell] = table.unit * (double)table.rgb[c][cell];
 		lattice.valid[cell] = 1;
 	}
-	assert_int_equal(BASELINE_ARCHIMEDEAN.fit(&BASELINE_ARCHIMEDEAN, &material, &state, NULL), BP_OK);
-	found = state;
+	assert_int_equal(BASELINE_ARCHIMEDEAN.fit(&BASELINE_ARCHIMEDEAN, &material, &fitted, NULL), BP_OK);
+	found = fitted.state;
 	for (int c = 0; c < 3; c++) {
 		const double scale = (double)truth->channel[c].scale;
 		assert_int_equal(found->channel[c].family, family);
@@ -177,8 +177,8 @@ static void recovers(enum archimedean_family family, const struct own own[3])
 				assert_close((double)found->channel[c].marginal[axis][n], (double)truth->channel[c].marginal[axis][n], 1e-3);
 	}
 	/* 3 x (42 + 3) float32 and a byte per channel */
-	assert_int_equal(BASELINE_ARCHIMEDEAN.bytes(state), 543);
-	BASELINE_ARCHIMEDEAN.free_state(state);
+	assert_int_equal(fitted.bytes, 543);
+	BASELINE_ARCHIMEDEAN.free_state(fitted.state);
 	free(truth);
 	expansion_free(&table);
 	lattice_free(&lattice);

@@ -46,10 +46,10 @@ static void lossless_codecs_read_a_files_bytes_with_its_scale(void **unused)
 	}
 	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
 	for (int n = 0; n < 3; n++) {
-		void *state;
-		assert_int_equal(codecs[n]->fit(codecs[n], &material, &state, NULL), BP_OK);
-		assert_in_range(codecs[n]->bytes(state), 1, bytes + 100);
-		assert_int_equal(codecs[n]->expand(state, &table, NULL), BP_OK);
+		struct fitted fitted;
+		assert_int_equal(codecs[n]->fit(codecs[n], &material, &fitted, NULL), BP_OK);
+		assert_in_range(fitted.bytes, 1, bytes + 100);
+		assert_int_equal(codecs[n]->expand(fitted.state, &table, NULL), BP_OK);
 		for (size_t c = 0; c < 3; c++)
 			for (size_t cell = 0; cell < cells; cell++) {
 				double stored;
@@ -57,7 +57,7 @@ static void lossless_codecs_read_a_files_bytes_with_its_scale(void **unused)
 				assert_true(table.rgb[c][cell] == (stored > 0 ? (float)(stored * MERL_SCALE[c]) : 0)); /* -1: not measured */
 			}
 		assert_true(table.rgb[0][1] == 2);
-		codecs[n]->free_state(state);
+		codecs[n]->free_state(fitted.state);
 	}
 	expansion_free(&table);
 	free(raw);
@@ -86,17 +86,17 @@ static void more_bytes_bring_zfp_closer(void **unused)
 
 	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
 	for (size_t budget = 1500; budget < 24000; budget *= 4) {
-		void *state;
+		struct fitted fitted;
 		material.budget_bytes = budget;
-		assert_int_equal(BASELINE_ZFP.fit(&BASELINE_ZFP, &material, &state, NULL), BP_OK);
-		assert_int_equal(BASELINE_ZFP.expand(state, &table, NULL), BP_OK);
+		assert_int_equal(BASELINE_ZFP.fit(&BASELINE_ZFP, &material, &fitted, NULL), BP_OK);
+		assert_int_equal(BASELINE_ZFP.expand(fitted.state, &table, NULL), BP_OK);
 		double now = largest_error(&lattice, &table);
 		assert_true(now < error);
-		assert_true(BASELINE_ZFP.bytes(state) > bytes);
-		assert_in_range(BASELINE_ZFP.bytes(state), budget / 2, budget * 2);
+		assert_true(fitted.bytes > bytes);
+		assert_in_range(fitted.bytes, budget / 2, budget * 2);
 		error = now;
-		bytes = BASELINE_ZFP.bytes(state);
-		BASELINE_ZFP.free_state(state);
+		bytes = fitted.bytes;
+		BASELINE_ZFP.free_state(fitted.state);
 	}
 	assert_true(error < 0.1);
 	expansion_free(&table);

@@ -69,10 +69,10 @@ static void edwards_gives_the_values_worked_out_by_hand(void **state)
 static void the_cells_angles_agree_with_the_directions(void **state)
 {
 	const struct lattice_dims dims = {90, 90, 180};
-	struct centre_tables tables;
+	struct lattice_cosines tables;
 	(void)state;
 
-	centre_tables_fill(dims, &tables);
+	lattice_centres(dims, &tables);
 	for (int n = 0; n < 3; n++) {
 		/* 10, 25, 50 degrees lie at 30, 47.43, 67.08 */
 		const double at[3][3] = {{30, 30, 60}, {47.43416490252569, 50, 90}, {67.08203932499369, 20, 30}};
@@ -172,28 +172,28 @@ static struct lattice make_table(const struct lobe_model *model, const float *sh
 	return lattice;
 }
 
-static bp_status fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective objective, void **state,
-                     bp_error *error)
+static bp_status fit(const struct lobe_model *model, const struct lattice *lattice, enum lobe_objective objective,
+                     struct fitted *out, bp_error *error)
 {
 	const struct lobe_variant variant = {model, objective};
-	return lobe_fit(&(struct baseline){.variant = &variant}, &(struct bench_material){.lattice = lattice}, state, error);
+	return lobe_fit(&(struct baseline){.variant = &variant}, &(struct bench_material){.lattice = lattice}, out, error);
 }
 
 static void check_recovery_by(enum lobe_objective objective, const struct lobe_model *model, const float *shape,
                               const float *diffuse, const float *specular)
 {
 	struct lattice lattice = make_table(model, shape, diffuse, specular);
-	void *state;
+	struct fitted fitted;
 
-	assert_int_equal(fit(model, &lattice, objective, &state, NULL), BP_OK);
-	struct lobe_state *found = state;
+	assert_int_equal(fit(model, &lattice, objective, &fitted, NULL), BP_OK);
+	struct lobe_state *found = fitted.state;
 	for (int n = 0; n < model->shape_count; n++)
 		assert_close(found->shape[n], shape[n], 1e-3);
 	for (int c = 0; c < 3; c++) {
 		assert_close(found->diffuse[c], diffuse[c], 1e-3);
 		assert_close(found->specular[c], specular[c], 1e-3);
 	}
-	free(state);
+	free(found);
 	lattice_free(&lattice);
 }
 
@@ -230,7 +230,7 @@ static void invalid_cells_take_no_part_in_a_fit(void **state)
 {
 	const float shape[3] = {0.35F};
 	struct lattice lattice = make_table(&LOBE_WARD, shape, DIFFUSE, SPECULAR);
-	void *fitted;
+	struct fitted fitted;
 	(void)state;
 
 	for (size_t cell = 0; cell < lattice_cells(SMALL); cell += 3) {
@@ -238,17 +238,17 @@ static void invalid_cells_take_no_part_in_a_fit(void **state)
 		lattice.rgb[0][cell] = 1e6;
 	}
 	assert_int_equal(fit(&LOBE_WARD, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
-	struct lobe_state *found = fitted;
+	struct lobe_state *found = fitted.state;
 	assert_close(found->shape[0], shape[0], 1e-3);
 	assert_close(found->diffuse[0], DIFFUSE[0], 1e-3);
-	free(fitted);
+	free(found);
 	lattice_free(&lattice);
 }
 
 static void a_table_without_a_valid_cell_is_refused(void **state)
 {
 	struct lattice lattice;
-	void *fitted;
+	struct fitted fitted;
 	bp_error error;
 	(void)state;
 
@@ -260,7 +260,7 @@ static void a_table_without_a_valid_cell_is_refused(void **state)
 static void a_black_table_gives_a_black_model(void **state)
 {
 	struct lattice lattice;
-	void *fitted;
+	struct fitted fitted;
 	(void)state;
 
 	assert_int_equal(lattice_alloc(SMALL, &lattice, NULL), BP_OK);
@@ -269,10 +269,10 @@ static void a_black_table_gives_a_black_model(void **state)
 		lattice.valid[cell] = 1;
 	}
 	assert_int_equal(fit(&LOBE_COOK_TORRANCE, &lattice, LOBE_COSINE, &fitted, NULL), BP_OK);
-	struct lobe_state *found = fitted;
+	struct lobe_state *found = fitted.state;
 	for (int c = 0; c < 3; c++)
 		assert_true(found->diffuse[c] == 0 && found->specular[c] == 0);
-	free(fitted);
+	free(found);
 	lattice_free(&lattice);
 }
 

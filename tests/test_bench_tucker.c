@@ -94,12 +94,12 @@ static void the_table_comes_back_and_holes_are_ignored(void **unused)
 	struct lattice lattice = make_table();
 	const struct bench_material material = {.name = "two-terms", .lattice = &lattice, .budget_bytes = 4000};
 	struct expansion table;
-	void *state;
+	struct fitted fitted;
 	(void)unused;
 
 	assert_int_equal(expansion_alloc(SMALL, &table, NULL), BP_OK);
-	assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &state, NULL), BP_OK);
-	assert_int_equal(BASELINE_TUCKER.expand(state, &table, NULL), BP_OK);
+	assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &fitted, NULL), BP_OK);
+	assert_int_equal(BASELINE_TUCKER.expand(fitted.state, &table, NULL), BP_OK);
 	for (uint32_t i = 0; i < SMALL.theta_h; i++)
 		for (uint32_t k = 0; k < SMALL.phi_d; k++) {
 			size_t cell = lattice_index(SMALL, i, 7, k);
@@ -107,7 +107,7 @@ static void the_table_comes_back_and_holes_are_ignored(void **unused)
 			if (!(fabs(table.unit * (double)table.rgb[1][cell] + LOG_OFFSET - expected) <= 1e-3 * expected))
 				fail_msg("cell %zu: %g, expected %g", cell, (double)table.rgb[1][cell], expected);
 		}
-	BASELINE_TUCKER.free_state(state);
+	BASELINE_TUCKER.free_state(fitted.state);
 	expansion_free(&table);
 	lattice_free(&lattice);
 }
@@ -122,17 +122,17 @@ static void an_evaluation_at_a_centre_gives_the_tables_value(void **unused)
 	struct lattice lattice = make_table();
 	const struct bench_material material = {.name = "two-terms", .lattice = &lattice, .budget_bytes = 4000};
 	double rgb[3];
-	void *state;
+	struct fitted fitted;
 	(void)unused;
 
-	assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &state, NULL), BP_OK);
-	BASELINE_TUCKER.evaluate(state, wi, wo, rgb);
+	assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &fitted, NULL), BP_OK);
+	BASELINE_TUCKER.evaluate(fitted.state, wi, wo, rgb);
 	for (int q = 0; q < 3; q++) {
 		double expected = lattice.rgb[q][lattice_index(SMALL, 12, 6, 8)];
 		if (!(fabs(rgb[q] - expected) <= 2e-3 * expected))
 			fail_msg("channel %d: %g, expected %g", q, rgb[q], expected);
 	}
-	BASELINE_TUCKER.free_state(state);
+	BASELINE_TUCKER.free_state(fitted.state);
 	lattice_free(&lattice);
 }
 
@@ -149,11 +149,11 @@ static void the_size_follows_the_budget(void **unused)
 	}
 	for (size_t budget = 1000; budget <= 8000; budget *= 2) {
 		size_t term = (24 + 20 + 32 + 3) * 4;
-		void *state;
+		struct fitted fitted;
 		material.budget_bytes = budget;
-		assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &state, NULL), BP_OK);
-		assert_int_equal(BASELINE_TUCKER.bytes(state), budget / term * term);
-		BASELINE_TUCKER.free_state(state);
+		assert_int_equal(BASELINE_TUCKER.fit(&BASELINE_TUCKER, &material, &fitted, NULL), BP_OK);
+		assert_int_equal(fitted.bytes, budget / term * term);
+		BASELINE_TUCKER.free_state(fitted.state);
 	}
 	lattice_free(&lattice);
 }

@@ -194,8 +194,8 @@ static void both_kernel_tables_give_the_same_bits(void **user)
 		t->wavelet_join(&filter, o[0], o[0] + LARGE / 2, N, W, o[1]);
 		memcpy(o[2], in, sizeof in);
 		t->residual(weight, o[1], LARGE, o[2]);
-		sums[k][0] = t->weigh(weight, LARGE, o[2]);
-		sums[k][1] = t->precondition(weight, o[2], LARGE, o[3]);
+		sums[k][0] = t->weigh(weight, o[2], LARGE, o[2]);
+		sums[k][1] = t->weigh(weight, o[2], LARGE, o[3]);
 		t->add_scaled(0.3f, o[3], LARGE, o[2]);
 		t->turn(0.7f, o[2], LARGE, o[3]);
 		t->gains(o[2], o[3], weight, 0.01f, LARGE, o[1]);

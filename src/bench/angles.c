@@ -1,20 +1,5 @@
 #include "angles.h"
 
-void centre_tables_fill(struct lattice_dims dims, struct centre_tables *out)
-{
-	for (uint32_t i = 0; i < dims.theta_h; i++) {
-		double s = (i + 0.5) / dims.theta_h;
-		out->cos_h[i] = cos(s * s * M_PI_2);
-		out->sin_h[i] = sin(s * s * M_PI_2);
-	}
-	for (uint32_t j = 0; j < dims.theta_d; j++) {
-		out->cos_d[j] = cos((j + 0.5) / dims.theta_d * M_PI_2);
-		out->sin_d[j] = sin((j + 0.5) / dims.theta_d * M_PI_2);
-	}
-	for (uint32_t k = 0; k < dims.phi_d; k++)
-		out->cos_p[k] = cos((k + 0.5) / dims.phi_d * M_PI);
-}
-
 static double below(double x, uint32_t extent)
 {
 	double last = nextafter((double)extent, 0);

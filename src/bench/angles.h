@@ -17,19 +17,11 @@ struct cell_angles {
 	double cos_d;        /* of theta_d = the angle between either direction and the half vector */
 };
 
-/* cos and sin of every centre along each axis. */
-struct centre_tables {
-	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX];
-	double cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX], cos_p[LATTICE_EXTENT_MAX];
-};
-
-void centre_tables_fill(struct lattice_dims dims, struct centre_tables *out);
-
 /*
  * Rusinkiewicz (1998), with phi_h = 0: the half vector is (sin_h, 0, cos_h), wi is (theta_d, phi_d)
  * about it and wo its mirror image, so cos_i, cos_o = cos_h cos_d -+ sin_h sin_d cos_p.
  */
-static inline struct cell_angles cell_angles_at(const struct centre_tables *t, uint32_t i, uint32_t j, uint32_t k)
+static inline struct cell_angles cell_angles_at(const struct lattice_cosines *t, uint32_t i, uint32_t j, uint32_t k)
 {
 	double a = t->cos_h[i] * t->cos_d[j], b = t->sin_h[i] * t->sin_d[j] * t->cos_p[k];
 

@@ -43,15 +43,6 @@ double archimedean_edges(struct lattice_dims dims, const struct archimedean_chan
 	return sign;
 }
 
-static size_t archimedean_parameters(const void *opaque)
-{
-	const struct lattice_dims dims = ((const struct archimedean_state *)opaque)->dims;
-
-	return 3 * ((size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3);
-}
-
-static size_t archimedean_bytes(const void *state) { return archimedean_parameters(state) * sizeof(float) + 3; }
-
 static double finite_or_zero(double x) { return isfinite(x) ? x : 0; }
 
 /* C at all corners of one edge of theta_h: D + 1 rows of P + 1. */
@@ -135,11 +126,8 @@ static void archimedean_evaluate(const void *opaque, const double wi[3], const d
 }
 
 const struct baseline BASELINE_ARCHIMEDEAN = {
-	.name = "archimedean",
 	.reference = "Ozturk et al. 2010, Frank or Clayton copula",
 	.fit = archimedean_fit,
-	.bytes = archimedean_bytes,
-	.parameters = archimedean_parameters,
 	.expand = archimedean_expand,
 	.evaluate = archimedean_evaluate,
 	.free_state = free,

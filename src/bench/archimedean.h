@@ -55,6 +55,7 @@ double archimedean_edges(struct lattice_dims dims, const struct archimedean_chan
                          struct copula_edge *room, const struct copula_edge *out[3]);
 
 /* The baseline's fit (archimedean_fit.c). */
-bp_status archimedean_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error);
+bp_status archimedean_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out,
+                          bp_error *error);
 
 #endif

@@ -253,7 +253,7 @@ static void fit_channel(struct search *search, struct archimedean_channel *chann
 	channel->diffuse = (float)(search->diffuse * unit);
 }
 
-bp_status archimedean_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
+bp_status archimedean_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out, bp_error *error)
 {
 	const struct lattice *lattice = material->lattice;
 	const size_t cells = lattice_cells(lattice->dims);
@@ -281,7 +281,8 @@ bp_status archimedean_fit(const struct baseline *self, const struct bench_materi
 		search->rgb = sample.rgb[c];
 		fit_channel(search, &state->channel[c], sample.unit);
 	}
-	*out = state;
+	const size_t numbers = 3 * ((size_t)lattice->dims.theta_h + lattice->dims.theta_d + lattice->dims.phi_d + 3);
+	*out = (struct fitted){state, numbers * sizeof(float) + 3, numbers};
 	state = NULL;
 out:
 	lobe_sample_free(&sample);

@@ -25,16 +25,19 @@ struct bench_material {
 /* One evaluation: unit vectors in the local frame (normal = +z), both above the horizon; rgb in 1/sr. */
 typedef void evaluate_fn(const void *state, const double wi[3], const double wo[3], double rgb[3]);
 
+/* What a fit made. */
+struct fitted {
+	void *state;       /* for expand, evaluate, ...; released with free_state */
+	size_t bytes;      /* what would be stored */
+	size_t parameters; /* numbers stored; 0 where that is a codec's bytes */
+};
+
 struct baseline {
-	const char *name;      /* one word, the row's key in the table */
 	const char *reference; /* author and year, or library */
 	bool budgeted;         /* true: fit aims at the budget; false: its size is its own */
 	const void *variant;   /* fit's own: which of several methods this is */
 
-	/* *state is for expand, evaluate, ... and is released with free_state. */
-	bp_status (*fit)(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error);
-	size_t (*bytes)(const void *state);
-	size_t (*parameters)(const void *state); /* numbers stored; NULL where the state is a codec's bytes */
+	bp_status (*fit)(const struct baseline *self, const struct bench_material *material, struct fitted *out, bp_error *error);
 
 	/* Fills the whole table; the caller has allocated it with the material's dims. Every value is finite and >= 0. */
 	bp_status (*expand)(const void *state, struct expansion *out, bp_error *error);

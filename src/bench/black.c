@@ -4,19 +4,14 @@
 
 #include "baseline.h"
 
-static bp_status black_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
+static bp_status black_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out,
+                           bp_error *error)
 {
 	(void)self;
 	(void)material;
 	(void)error;
-	*state = NULL;
+	*out = (struct fitted){0};
 	return BP_OK;
-}
-
-static size_t black_bytes(const void *state)
-{
-	(void)state;
-	return 0;
 }
 
 static bp_status black_expand(const void *state, struct expansion *out, bp_error *error)
@@ -38,11 +33,8 @@ static void black_evaluate(const void *state, const double wi[3], const double w
 }
 
 const struct baseline BASELINE_BLACK = {
-	.name = "black",
 	.reference = "no light at all",
 	.fit = black_fit,
-	.bytes = black_bytes,
-	.parameters = black_bytes,
 	.expand = black_expand,
 	.evaluate = black_evaluate,
 	.free_state = free,

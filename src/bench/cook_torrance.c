@@ -35,7 +35,6 @@ const struct lobe_model LOBE_COOK_TORRANCE = {
 	.value = cook_torrance_value,
 };
 
-const struct baseline BASELINE_COOK_TORRANCE =
-	LOBE_BASELINE("cook-torrance", "Cook and Torrance 1981", LOBE_COOK_TORRANCE, LOBE_COSINE);
+const struct baseline BASELINE_COOK_TORRANCE = LOBE_BASELINE("Cook and Torrance 1981", LOBE_COOK_TORRANCE, LOBE_COSINE);
 const struct baseline BASELINE_COOK_TORRANCE_RELATIVE =
-	LOBE_BASELINE("cook-torrance-relative", "Cook and Torrance 1981; relative error", LOBE_COOK_TORRANCE, LOBE_RELATIVE);
+	LOBE_BASELINE("Cook and Torrance 1981; relative error", LOBE_COOK_TORRANCE, LOBE_RELATIVE);

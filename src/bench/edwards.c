@@ -35,7 +35,6 @@ const struct lobe_model LOBE_EDWARDS = {
 	.value = edwards_value,
 };
 
-const struct baseline BASELINE_EDWARDS =
-	LOBE_BASELINE("edwards", "Edwards et al. 2006, data-fitting model", LOBE_EDWARDS, LOBE_COSINE);
+const struct baseline BASELINE_EDWARDS = LOBE_BASELINE("Edwards et al. 2006, data-fitting model", LOBE_EDWARDS, LOBE_COSINE);
 const struct baseline BASELINE_EDWARDS_RELATIVE =
-	LOBE_BASELINE("edwards-relative", "Edwards et al. 2006, data-fitting model; relative error", LOBE_EDWARDS, LOBE_RELATIVE);
+	LOBE_BASELINE("Edwards et al. 2006, data-fitting model; relative error", LOBE_EDWARDS, LOBE_RELATIVE);

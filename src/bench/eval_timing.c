@@ -8,7 +8,6 @@
 
 #include "merl/merl_file.h"
 #include "model/table/table.h"
-#include "rivals.h"
 #include "timing.h"
 
 static double sink; /* results go here, so that no loop is optimised away */

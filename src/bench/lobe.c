@@ -150,7 +150,7 @@ static void state_fill(struct lobe_state *out, struct search *search, const doub
 	}
 }
 
-bp_status lobe_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
+bp_status lobe_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out, bp_error *error)
 {
 	const struct lobe_variant *variant = self->variant;
 	const struct lattice *lattice = material->lattice;
@@ -159,13 +159,13 @@ bp_status lobe_fit(const struct baseline *self, const struct bench_material *mat
 	struct lobe_sample thin = {0}, dense = {0};
 	struct search search = {.model = variant->model};
 	struct start starts[STARTS_KEPT];
-	struct lobe_state *out = calloc(1, sizeof *out);
+	struct lobe_state *state = calloc(1, sizeof *state);
 	double best = HUGE_VAL;
 	int chosen = 0;
 	bp_status status;
 
-	if (!out)
-		return error_memory(error, sizeof *out);
+	if (!state)
+		return error_memory(error, sizeof *state);
 	gsl_set_error_handler_off();
 	if ((status = lobe_sample_take(lattice, stride_d, stride_p, &dense, error)))
 		goto out;
@@ -193,21 +193,18 @@ bp_status lobe_fit(const struct baseline *self, const struct bench_material *mat
 	search.sample = &dense;
 	if ((status = descend(&search, starts[chosen].x, &best, error)))
 		goto out;
-	state_fill(out, &search, starts[chosen].x, dense.unit);
-	*state = out;
-	out = NULL;
+	state_fill(state, &search, starts[chosen].x, dense.unit);
+	const size_t numbers = 6 + (size_t)variant->model->shape_count;
+	*out = (struct fitted){state, numbers * sizeof(float), numbers};
+	state = NULL;
 	status = BP_OK;
 out:
 	free(search.lobe);
 	lobe_sample_free(&thin);
 	lobe_sample_free(&dense);
-	free(out);
+	free(state);
 	return status;
 }
-
-size_t lobe_parameters(const void *state) { return 6 + (size_t)((const struct lobe_state *)state)->model->shape_count; }
-
-size_t lobe_bytes(const void *state) { return lobe_parameters(state) * sizeof(float); }
 
 static double lobe_at(const struct lobe_state *state, struct cell_angles a)
 {
@@ -224,10 +221,10 @@ bp_status lobe_expand(const void *opaque, struct expansion *out, bp_error *error
 {
 	const struct lobe_state *state = opaque;
 	const struct lattice_dims dims = out->dims;
-	struct centre_tables tables;
+	struct lattice_cosines tables;
 
 	(void)error;
-	centre_tables_fill(dims, &tables);
+	lattice_centres(dims, &tables);
 	out->unit = 1;
 	for (uint32_t i = 0; i < dims.theta_h; i++)
 		for (uint32_t j = 0; j < dims.theta_d; j++)

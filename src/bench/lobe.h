@@ -62,17 +62,14 @@ struct lobe_variant {
 	const struct lobe_model *model;
 	enum lobe_objective objective;
 };
-bp_status lobe_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error);
-size_t lobe_bytes(const void *state);
-size_t lobe_parameters(const void *state);
+bp_status lobe_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out, bp_error *error);
 bp_status lobe_expand(const void *state, struct expansion *out, bp_error *error);
 evaluate_fn lobe_evaluate;
 
-#define LOBE_BASELINE(method, text, lobe_model, lobe_objective) \
+#define LOBE_BASELINE(text, lobe_model, lobe_objective) \
 	{ \
-		.name = method, .reference = text, .variant = &(const struct lobe_variant){&lobe_model, lobe_objective}, \
-		.fit = lobe_fit, .bytes = lobe_bytes, .parameters = lobe_parameters, .expand = lobe_expand, .evaluate = lobe_evaluate, \
-		.free_state = free \
+		.reference = text, .variant = &(const struct lobe_variant){&lobe_model, lobe_objective}, .fit = lobe_fit, \
+		.expand = lobe_expand, .evaluate = lobe_evaluate, .free_state = free \
 	}
 
 /* The models' lobes, for the tests. */

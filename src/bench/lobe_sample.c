@@ -32,11 +32,11 @@ bp_status lobe_sample_take(const struct lattice *lattice, uint32_t stride_d, uin
 	const struct lattice_dims dims = lattice->dims;
 	size_t most = (size_t)dims.theta_h * ((dims.theta_d + stride_d - 1) / stride_d) * ((dims.phi_d + stride_p - 1) / stride_p);
 	size_t bytes = most * (sizeof(struct cell_angles) + 4 * sizeof(double) + sizeof(uint32_t));
-	struct centre_tables tables;
+	struct lattice_cosines tables;
 	struct lobe_sample sample = {.unit = 0};
 	double weight_sum = 0;
 
-	centre_tables_fill(dims, &tables);
+	lattice_centres(dims, &tables);
 	sample.angles = malloc(bytes);
 	if (!sample.angles)
 		return error_memory(error, bytes);

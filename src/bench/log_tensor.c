@@ -10,19 +10,14 @@ enum { NONE = 0xFFFFFFFF };
 /* Fills the NONE entries of a line of `count` entries `stride` apart: from the nearest before, else from the nearest after. */
 static void fill_line(uint32_t *entry, size_t count, size_t stride)
 {
-	uint32_t last = NONE;
-
-	for (size_t n = 0; n < count; n++)
-		if (entry[n * stride] != NONE)
-			last = entry[n * stride];
-		else
-			entry[n * stride] = last;
-	last = NONE;
-	for (size_t n = count; n-- > 0;)
-		if (entry[n * stride] != NONE)
-			last = entry[n * stride];
-		else
-			entry[n * stride] = last;
+	for (int backwards = 0; backwards < 2; backwards++) {
+		uint32_t last = NONE;
+		for (size_t n = 0; n < count; n++) {
+			uint32_t *at = &entry[(backwards ? count - 1 - n : n) * stride];
+			last = *at != NONE ? *at : last;
+			*at = last;
+		}
+	}
 }
 
 bp_status lattice_fill_sources(const struct lattice *lattice, uint32_t *source, bp_error *error)

@@ -85,7 +85,8 @@ static void lossless_free(void *opaque)
 	free(state);
 }
 
-static bp_status lossless_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
+static bp_status lossless_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out,
+                              bp_error *error)
 {
 	const struct codec *codec = self->variant;
 	const size_t capacity = codec->bound(material->raw_bytes);
@@ -106,11 +107,9 @@ static bp_status lossless_fit(const struct baseline *self, const struct bench_ma
 	if (status)
 		lossless_free(state);
 	else
-		*out = state;
+		*out = (struct fitted){.state = state, .bytes = state->bytes};
 	return status;
 }
-
-static size_t lossless_bytes(const void *state) { return ((const struct lossless_state *)state)->bytes; }
 
 /* Invalid cells become 0. */
 static bp_status lossless_expand(const void *opaque, struct expansion *out, bp_error *error)
@@ -136,12 +135,11 @@ static bp_status lossless_expand(const void *opaque, struct expansion *out, bp_e
 	return BP_OK;
 }
 
-#define LOSSLESS(codec_name, text, codec) \
+#define LOSSLESS(text, codec) \
 	{ \
-		.name = codec_name, .reference = text, .variant = &codec, .fit = lossless_fit, .bytes = lossless_bytes, \
-		.expand = lossless_expand, .free_state = lossless_free \
+		.reference = text, .variant = &codec, .fit = lossless_fit, .expand = lossless_expand, .free_state = lossless_free \
 	}
 
-const struct baseline BASELINE_ZLIB = LOSSLESS("zlib", "zlib " ZLIB_VERSION ", level 6, lossless", ZLIB);
-const struct baseline BASELINE_ZSTD = LOSSLESS("zstd", "zstd " ZSTD_VERSION_STRING ", level 9, lossless", ZSTD);
-const struct baseline BASELINE_XZ = LOSSLESS("xz", "xz " LZMA_VERSION_STRING ", preset 0, lossless", XZ);
+const struct baseline BASELINE_ZLIB = LOSSLESS("zlib " ZLIB_VERSION ", level 6, lossless", ZLIB);
+const struct baseline BASELINE_ZSTD = LOSSLESS("zstd " ZSTD_VERSION_STRING ", level 9, lossless", ZSTD);
+const struct baseline BASELINE_XZ = LOSSLESS("xz " LZMA_VERSION_STRING ", preset 0, lossless", XZ);

@@ -29,7 +29,8 @@ static void profile_free(void *opaque)
 	free(state);
 }
 
-static bp_status profile_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
+static bp_status profile_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out,
+                             bp_error *error)
 {
 	const struct fit_options options = {.profile = *(const enum profile *)self->variant,
 	                                    .budget_bytes = (uint32_t)material->budget_bytes,
@@ -44,11 +45,9 @@ static bp_status profile_fit(const struct baseline *self, const struct bench_mat
 	if (status)
 		profile_free(state);
 	else
-		*out = state;
+		*out = (struct fitted){.state = state, .bytes = state->bytes};
 	return status;
 }
-
-static size_t profile_bytes(const void *state) { return ((const struct profile_state *)state)->bytes; }
 
 static bp_status profile_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
@@ -85,17 +84,15 @@ static void profile_evaluate(const void *opaque, const double wi[3], const doubl
 
 /* What both profiles have in common. */
 #define PROFILE_BASELINE(number) \
-	.variant = &(const enum profile){number}, .budgeted = true, .fit = profile_fit, .bytes = profile_bytes, \
-	.expand = profile_expand, .prepare = profile_prepare, .evaluate = profile_evaluate, .free_state = profile_free
+	.variant = &(const enum profile){number}, .budgeted = true, .fit = profile_fit, .expand = profile_expand, \
+	.prepare = profile_prepare, .evaluate = profile_evaluate, .free_state = profile_free
 
 const struct baseline BASELINE_PAPER = {
-	.name = "paper",
 	.reference = "this project, --profile paper: Bilgili et al. 2012, pair copulas and wavelets",
 	PROFILE_BASELINE(PROFILE_PAPER),
 };
 
 const struct baseline BASELINE_SPECTRAL = {
-	.name = "spectral",
 	.reference = "this project, the spectral profile",
 	PROFILE_BASELINE(PROFILE_SPECTRAL),
 };

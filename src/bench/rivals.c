@@ -4,39 +4,6 @@
 
 #include "timing.h"
 
-static void outgoing(double theta_o, float wo[3])
-{
-	wo[0] = (float)sin(theta_o);
-	wo[1] = 0;
-	wo[2] = (float)cos(theta_o);
-}
-
-static double mean_value(const bp_material *material, const float wi[3], const float wo[3])
-{
-	float rgb[3];
-	bp_material_evaluate(material, wi, wo, rgb);
-	return ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3;
-}
-
-struct sums {
-	double weight, square;
-	int count;
-};
-
-/* A sample drawn with this density. */
-static void sums_add(struct sums *sums, const bp_material *material, const float wi[3], const float wo[3], double pdf)
-{
-	double weight = mean_value(material, wi, wo) * (double)wi[2] / pdf;
-	sums->weight += weight;
-	sums->square += weight * weight;
-}
-
-static struct spread sums_end(const struct sums *sums)
-{
-	double mean = sums->weight / sums->count, variance = sums->square / sums->count - mean * mean;
-	return (struct spread){mean > 0 ? sqrt(fmax(0, variance)) / mean : 0, mean};
-}
-
 static double ggx_density(double alpha, const float wi[3], const float wo[3])
 {
 	double h[3], length = 0, a2 = alpha * alpha, z = (double)wo[2];
@@ -66,42 +33,43 @@ static void ggx_draw(double alpha, const float wo[3], double u1, double u2, floa
 		wi[c] = (float)(dot * h[c] / n - (double)wo[c]);
 }
 
-struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixture, double theta_o, int samples,
-                            unsigned long long *u)
+/* wi for wo; returns its density, 0 for a lobe's sample below the horizon. */
+static double sample_draw(const bp_material *material, const struct ggx_mixture *mixture, const float wo[3],
+                          unsigned long long *u, float wi[3])
 {
-	struct sums sums = {.count = samples};
-	float wo[3], wi[3];
-	outgoing(theta_o, wo);
-	for (int n = 0; n < samples; n++) {
-		double u1 = uniform_next(u), u2 = uniform_next(u);
-		if (uniform_next(u) < mixture.share) {
-			ggx_draw(mixture.roughness, wo, u1, u2, wi);
-		} else {
-			wi[0] = (float)(sqrt(u1) * cos(2 * M_PI * u2));
-			wi[1] = (float)(sqrt(u1) * sin(2 * M_PI * u2));
-			wi[2] = (float)sqrt(1 - u1);
-		}
-		if (!(wi[2] > 0)) /* a lobe's sample below the horizon: weight 0 */
-			continue;
-		double pdf = (1 - mixture.share) * (double)wi[2] / M_PI;
-		if (mixture.share > 0)
-			pdf += mixture.share * ggx_density(mixture.roughness, wi, wo);
-		sums_add(&sums, material, wi, wo, pdf);
+	const double u1 = uniform_next(u), u2 = uniform_next(u), u3 = uniform_next(u);
+	if (!mixture)
+		return (double)bp_material_sample(material, wo, (const float[]){(float)u1, (float)u2, (float)u3}, wi);
+	if (u3 < mixture->share) {
+		ggx_draw(mixture->roughness, wo, u1, u2, wi);
+	} else {
+		wi[0] = (float)(sqrt(u1) * cos(2 * M_PI * u2));
+		wi[1] = (float)(sqrt(u1) * sin(2 * M_PI * u2));
+		wi[2] = (float)sqrt(1 - u1);
 	}
-	return sums_end(&sums);
+	if (!(wi[2] > 0))
+		return 0;
+	const double lobe = mixture->share > 0 ? mixture->share * ggx_density(mixture->roughness, wi, wo) : 0;
+	return (1 - mixture->share) * (double)wi[2] / M_PI + lobe;
 }
 
-struct spread spread_of_material(const bp_material *material, double theta_o, int samples, unsigned long long *u)
+struct spread spread_of(const bp_material *material, const struct ggx_mixture *mixture, double theta_o, int samples,
+                        unsigned long long *u)
 {
-	struct sums sums = {.count = samples};
-	float wo[3], wi[3];
-	outgoing(theta_o, wo);
+	const float wo[3] = {(float)sin(theta_o), 0, (float)cos(theta_o)};
+	double sum = 0, squares = 0;
 	for (int n = 0; n < samples; n++) {
-		const float numbers[3] = {(float)uniform_next(u), (float)uniform_next(u), (float)uniform_next(u)};
-		const double pdf = (double)bp_material_sample(material, wo, numbers, wi);
-		sums_add(&sums, material, wi, wo, pdf);
+		float wi[3], rgb[3];
+		const double pdf = sample_draw(material, mixture, wo, u, wi);
+		if (pdf == 0)
+			continue;
+		bp_material_evaluate(material, wi, wo, rgb);
+		const double weight = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3 * (double)wi[2] / pdf;
+		sum += weight;
+		squares += weight * weight;
 	}
-	return sums_end(&sums);
+	const double mean = sum / samples, variance = squares / samples - mean * mean;
+	return (struct spread){mean > 0 ? sqrt(fmax(0, variance)) / mean : 0, mean};
 }
 
 struct ggx_mixture ggx_fit(const bp_material *material, const double *theta_o, int angles, unsigned long long *u)
@@ -114,7 +82,7 @@ struct ggx_mixture ggx_fit(const bp_material *material, const double *theta_o, i
 			struct ggx_mixture mixture = {roughness, share / 10.0};
 			double sum = 0;
 			for (int n = 0; n < angles; n++) {
-				double deviation = spread_of_ggx(material, mixture, theta_o[n], SAMPLES, u).deviation;
+				double deviation = spread_of(material, &mixture, theta_o[n], SAMPLES, u).deviation;
 				sum += deviation * deviation;
 			}
 			if (sum < least) {

@@ -18,10 +18,9 @@ struct spread {
 	double deviation, albedo;
 };
 
-/* `u` is the state of a generator of uniform numbers (timing.h). */
-struct spread spread_of_ggx(const bp_material *material, struct ggx_mixture mixture, double theta_o, int samples,
-                            unsigned long long *u);
-struct spread spread_of_material(const bp_material *material, double theta_o, int samples, unsigned long long *u);
+/* Samples of the mixture, or of the material itself (NULL). `u` is the state of a generator of uniform numbers (timing.h). */
+struct spread spread_of(const bp_material *material, const struct ggx_mixture *mixture, double theta_o, int samples,
+                        unsigned long long *u);
 
 /* The mixture with the smallest mean square deviation over the angles. */
 struct ggx_mixture ggx_fit(const bp_material *material, const double *theta_o, int angles, unsigned long long *u);

@@ -34,39 +34,38 @@ static bp_status run_method(struct run *run, const struct bench_material *materi
                             const struct baseline *method, struct row *row, struct expansion *table, bp_error *error)
 {
 	double seconds[REPEATS];
-	void *state = NULL;
+	struct fitted fitted = {.state = NULL};
 	bp_status status = BP_OK;
 	int count = 0;
 
 	do {
 		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-		if (state)
-			method->free_state(state);
-		state = NULL;
-		if ((status = method->fit(method, material, &state, error)))
+		method->free_state(fitted.state);
+		fitted.state = NULL;
+		if ((status = method->fit(method, material, &fitted, error)))
 			return status;
 		seconds[count++] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 	} while (!run->quick && count < REPEATS && seconds[0] < SHORT_SECONDS);
 	row->fit_seconds = median_of(seconds, count);
-	row->bytes = (double)method->bytes(state);
-	row->parameters = method->parameters ? (double)method->parameters(state) : 0;
+	row->bytes = (double)fitted.bytes;
+	row->parameters = (double)fitted.parameters;
 	count = 0;
 	do {
 		double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-		if ((status = method->expand(state, table, error)))
+		if ((status = method->expand(fitted.state, table, error)))
 			goto out;
 		seconds[count++] = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 	} while (count < REPEATS && seconds[0] < SHORT_SECONDS);
 	row->decode_seconds = median_of(seconds, count);
 	row->evaluated = method->evaluate && !method->prepare ? EVALUATED_MODEL : EVALUATED_TABLE;
-	if (method->prepare && (status = method->prepare(state, table, error)))
+	if (method->prepare && (status = method->prepare(fitted.state, table, error)))
 		goto out;
-	status = method->evaluate ? time_evaluation(method->evaluate, state, run->pairs, &row->evaluate_ns, error)
+	status = method->evaluate ? time_evaluation(method->evaluate, fitted.state, run->pairs, &row->evaluate_ns, error)
 	                          : time_evaluation(evaluate_expansion, table, run->pairs, &row->evaluate_ns, error);
 	if (!status)
 		status = comparison_measure(&run->plans, truth, table, &row->figures, NULL, error);
 out:
-	method->free_state(state);
+	method->free_state(fitted.state);
 	return status;
 }
 

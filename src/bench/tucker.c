@@ -189,33 +189,25 @@ void tucker_free(void *opaque)
 	free(state);
 }
 
-static size_t floats_per_term(struct lattice_dims dims) { return (size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3; }
-
-static bp_status tucker_fit(const struct baseline *self, const struct bench_material *material, void **state, bp_error *error)
+static bp_status tucker_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out,
+                            bp_error *error)
 {
-	size_t terms = material->budget_bytes / (floats_per_term(material->lattice->dims) * sizeof(float));
-	struct tucker_state *out;
+	const struct lattice_dims dims = material->lattice->dims;
+	const size_t each = (size_t)dims.theta_h + dims.theta_d + dims.phi_d + 3,
+				 terms = material->budget_bytes / (each * sizeof(float));
+	struct tucker_state *state;
 	struct log_tensor tensor;
 	bp_status status = log_tensor_make(material->lattice, &tensor, error);
 
 	(void)self;
 	if (status)
 		return status;
-	status = tucker_decompose(&tensor, terms ? (uint32_t)terms : 1, &out, error);
+	status = tucker_decompose(&tensor, terms ? (uint32_t)terms : 1, &state, error);
 	log_tensor_free(&tensor);
 	if (!status)
-		*state = out;
+		*out = (struct fitted){state, state->terms * each * sizeof(float), state->terms * each};
 	return status;
 }
-
-static size_t tucker_parameters(const void *opaque)
-{
-	const struct tucker_state *state = opaque;
-
-	return state->terms * floats_per_term(state->dims);
-}
-
-static size_t tucker_bytes(const void *state) { return tucker_parameters(state) * sizeof(float); }
 
 static bp_status tucker_expand(const void *opaque, struct expansion *out, bp_error *error)
 {
@@ -272,12 +264,9 @@ static void tucker_evaluate(const void *opaque, const double wi[3], const double
 }
 
 const struct baseline BASELINE_TUCKER = {
-	.name = "tucker",
 	.reference = "Bilgili et al. 2011, repeated Tucker of the logarithm",
 	.budgeted = true,
 	.fit = tucker_fit,
-	.bytes = tucker_bytes,
-	.parameters = tucker_parameters,
 	.expand = tucker_expand,
 	.evaluate = tucker_evaluate,
 	.free_state = tucker_free,

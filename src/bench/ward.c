@@ -20,6 +20,5 @@ const struct lobe_model LOBE_WARD = {
 	.value = ward_value,
 };
 
-const struct baseline BASELINE_WARD = LOBE_BASELINE("ward", "Ward 1992, isotropic", LOBE_WARD, LOBE_COSINE);
-const struct baseline BASELINE_WARD_RELATIVE =
-	LOBE_BASELINE("ward-relative", "Ward 1992, isotropic; relative error", LOBE_WARD, LOBE_RELATIVE);
+const struct baseline BASELINE_WARD = LOBE_BASELINE("Ward 1992, isotropic", LOBE_WARD, LOBE_COSINE);
+const struct baseline BASELINE_WARD_RELATIVE = LOBE_BASELINE("Ward 1992, isotropic; relative error", LOBE_WARD, LOBE_RELATIVE);

@@ -80,7 +80,7 @@ static size_t total_size(const struct log_tensor *tensor, int exponent, uint8_t 
 	return sum;
 }
 
-static bp_status zfp_fit(const struct baseline *self, const struct bench_material *material, void **out, bp_error *error)
+static bp_status zfp_fit(const struct baseline *self, const struct bench_material *material, struct fitted *out, bp_error *error)
 {
 	struct log_tensor tensor = {0};
 	struct zfp_state *state = calloc(1, sizeof *state);
@@ -124,20 +124,13 @@ static bp_status zfp_fit(const struct baseline *self, const struct bench_materia
 		}
 		memcpy(state->stream[c], scratch, state->bytes[c]);
 	}
-	*out = state;
+	*out = (struct fitted){.state = state, .bytes = state->bytes[0] + state->bytes[1] + state->bytes[2]};
 	state = NULL;
 out:
 	log_tensor_free(&tensor);
 	free(scratch);
 	zfp_state_free(state);
 	return status;
-}
-
-static size_t zfp_bytes(const void *opaque)
-{
-	const struct zfp_state *state = opaque;
-
-	return state->bytes[0] + state->bytes[1] + state->bytes[2];
 }
 
 static bp_status zfp_expand(const void *opaque, struct expansion *out, bp_error *error)
@@ -159,11 +152,9 @@ static bp_status zfp_expand(const void *opaque, struct expansion *out, bp_error 
 }
 
 const struct baseline BASELINE_ZFP = {
-	.name = "zfp",
 	.reference = "zfp " ZFP_VERSION_STRING ", fixed accuracy, logarithm",
 	.budgeted = true,
 	.fit = zfp_fit,
-	.bytes = zfp_bytes,
 	.expand = zfp_expand,
 	.free_state = zfp_state_free,
 };

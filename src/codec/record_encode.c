@@ -147,11 +147,6 @@ out:
 	return status;
 }
 
-static double last_error(const struct packed *packed)
-{
-	return packed->head.layers[packed->head.layer_count - 1].fidelity.log_rmse;
-}
-
 /* ---- the smallest record within an error ---- */
 
 /* What a search for a size knows: sizes that do not satisfy end at `low`, the smallest that does is `high`, 0 for none. */
@@ -193,7 +188,7 @@ static bp_status record_search(const struct packing *packing, double max_error, 
 		bp_status status = record_build(packing, size, &trial, error);
 		if (status && (status != BP_ERROR_LIMIT || size == RECORD_BUDGET_MAX))
 			return status;
-		const double reached = status ? INFINITY : last_error(&trial);
+		const double reached = status ? INFINITY : trial.head.layers[trial.head.layer_count - 1].fidelity.log_rmse;
 		if (reached > max_error && size == RECORD_BUDGET_MAX) {
 			status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "an error of %g cannot be met: the least is %g, in %zu bytes",
 			                   max_error, reached, trial.bytes);

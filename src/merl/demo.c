@@ -65,11 +65,9 @@ struct half_terms {
 	double lobe, lobe2, coat; /* distributions */
 };
 
-static struct half_terms half_terms(const struct demo_material *m, struct lattice_dims dims, uint32_t i)
+static struct half_terms half_terms(const struct demo_material *m, const struct lattice_cosines *centres, uint32_t i)
 {
-	struct half_terms t;
-	const double root = (i + 0.5) / dims.theta_h;
-	quarter_cos_sin(root * root, &t.cosine, &t.sine);
+	struct half_terms t = {.cosine = centres->cos_h[i], .sine = centres->sin_h[i]};
 	t.lobe = m->share * ggx_distribution(m->roughness, t.cosine);
 	t.lobe2 = (1 - m->share) * ggx_distribution(m->roughness2, t.cosine);
 	t.coat = ggx_distribution(m->coat_roughness, t.cosine);
@@ -88,11 +86,10 @@ struct difference_terms {
 	double added[3]; /* sheen and retroreflection */
 };
 
-static struct difference_terms difference_terms(const struct demo_material *m, struct lattice_dims dims, uint32_t j)
+static struct difference_terms difference_terms(const struct demo_material *m, const struct lattice_cosines *centres, uint32_t j)
 {
 	static const double WAVELENGTH[3] = {650, 532, 450};
-	struct difference_terms t;
-	quarter_cos_sin((j + 0.5) / dims.theta_d, &t.cosine, &t.sine);
+	struct difference_terms t = {.cosine = centres->cos_d[j], .sine = centres->sin_d[j]};
 	const double width2 = m->retro_width * m->retro_width, spread = 1 + t.sine * t.sine / width2;
 	for (int c = 0; c < 3; c++) {
 		const double film = m->film > 0 ? film_factor(m->film, WAVELENGTH[c], t.sine) : 1;
@@ -213,17 +210,13 @@ bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, stru
 		return error_memory(error, 0);
 	}
 	struct faults faults = {.amount = clean ? 0 : m->noise, .state = &state};
-	double cos_phi[LATTICE_EXTENT_MAX], sine;
-	for (uint32_t k = 0; k < dims.phi_d; k++) {
-		const double t = (2.0 * k + 1) / dims.phi_d;
-		quarter_cos_sin(t <= 1 ? t : 2 - t, &cos_phi[k], &sine);
-		cos_phi[k] = t <= 1 ? cos_phi[k] : -cos_phi[k];
-	}
+	struct lattice_cosines centres;
+	lattice_centres(dims, &centres);
 	size_t n = 0;
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
-		const struct half_terms h = half_terms(m, dims, i);
+		const struct half_terms h = half_terms(m, &centres, i);
 		for (uint32_t j = 0; j < dims.theta_d; j++) {
-			const struct difference_terms d = difference_terms(m, dims, j);
+			const struct difference_terms d = difference_terms(m, &centres, j);
 			faults_start_row(&faults, (j + 0.5) / dims.theta_d);
 			for (uint32_t k = 0; k < dims.phi_d; k++, n++) {
 				double value[3], glitter[3] = {1, 1, 1};
@@ -232,7 +225,7 @@ bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, stru
 					if (speckle)
 						speckle_factor(speckle, (i + 0.5) / dims.theta_h, (j + 0.5) / dims.theta_d, (k + 0.5) / dims.phi_d,
 						               glitter);
-					material_evaluate(m, &h, &d, cos_phi[k], glitter, value);
+					material_evaluate(m, &h, &d, centres.cos_p[k], glitter, value);
 					read = faults.amount <= 0 || faults_apply(&faults, value);
 				}
 				lattice.valid[n] = read && value[0] >= 0 && value[1] >= 0 && value[2] >= 0;

@@ -25,23 +25,15 @@ bool lattice_dims_legal(struct lattice_dims dims)
 
 size_t lattice_cells(struct lattice_dims dims) { return (size_t)dims.theta_h * dims.theta_d * dims.phi_d; }
 
-bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error)
-{
-	if (lattice_dims_legal(dims))
-		return BP_OK;
-	return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
-	                 "lattice of %u x %u x %u: each extent must be %d to %d, %d cells at most", dims.theta_h, dims.theta_d,
-	                 dims.phi_d, LATTICE_EXTENT_MIN, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
-}
-
 /*
  * Three planes of values of `size` bytes and `extra` bytes for each cell in one block; planes[3] is where the extra ones start.
  */
 static bp_status planes_alloc(struct lattice_dims dims, size_t size, size_t extra, void **block, void *planes[4], bp_error *error)
 {
-	const bp_status status = lattice_dims_check(dims, error);
-	if (status)
-		return status;
+	if (!lattice_dims_legal(dims))
+		return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET,
+		                 "lattice of %u x %u x %u: each extent must be %d to %d, %d cells at most", dims.theta_h, dims.theta_d,
+		                 dims.phi_d, LATTICE_EXTENT_MIN, LATTICE_EXTENT_MAX, LATTICE_CELLS_MAX);
 	const size_t stride = (lattice_cells(dims) * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 	const size_t bytes = 3 * stride + lattice_cells(dims) * extra + ALIGNMENT;
 	/* Not aligned_alloc: a worker's heap, which is kept from material to material, would fill with gaps. */

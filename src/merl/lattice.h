@@ -60,8 +60,6 @@ struct lattice {
 };
 
 bool lattice_dims_legal(struct lattice_dims dims);
-/* BP_OK, or BP_ERROR_LIMIT with the extents and what is legal. */
-bp_status lattice_dims_check(struct lattice_dims dims, bp_error *error);
 size_t lattice_cells(struct lattice_dims dims);
 static inline bool lattice_dims_equal(struct lattice_dims a, struct lattice_dims b)
 {
@@ -72,7 +70,7 @@ static inline size_t lattice_index(struct lattice_dims dims, uint32_t i, uint32_
 	return k + (size_t)dims.phi_d * (j + (size_t)dims.theta_d * i);
 }
 
-/* Nothing valid, the planes not set: whoever allocates fills all of them. */
+/* Nothing valid, the planes not set: whoever allocates fills all of them. BP_ERROR_LIMIT where the extents are not legal. */
 bp_status lattice_alloc(struct lattice_dims dims, struct lattice *out, bp_error *error);
 void lattice_free(struct lattice *lattice); /* a zeroed struct is allowed, as in expansion_free */
 
@@ -96,6 +94,19 @@ void lattice_scan_finish(struct lattice *lattice);
 
 /* Cosine and sine of t quarter turns, t in [0, 1]: exact at 0 and 1, within 2e-16, the same on every machine. */
 void quarter_cos_sin(double t, double *cosine, double *sine);
+
+/* Cosines and sines of one place in each cell along theta_h, theta_d and phi_d: 40 KB, which the stack bears. */
+struct lattice_cosines {
+	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX];
+	double cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX];
+	double cos_p[LATTICE_EXTENT_MAX];
+};
+
+/* Of the centres. */
+void lattice_centres(struct lattice_dims dims, struct lattice_cosines *out);
+
+/* Of the lower corners, but |cos phi_d| at its least in the cell: together they give the largest smaller cosine in it. */
+void lattice_highest(struct lattice_dims dims, struct lattice_cosines *out);
 
 /*
  * The horizon: which cells extraction writes as negative values.

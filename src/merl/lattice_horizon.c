@@ -25,13 +25,6 @@ void quarter_cos_sin(double t, double *cosine, double *sine)
 	*sine = t <= 0.5 ? s : c;
 }
 
-/* Cosine and sine along theta_h and theta_d, |cos| along phi_d: 40 KB, which the stack bears. */
-struct cosines {
-	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX];
-	double cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX];
-	double cos_p[LATTICE_EXTENT_MAX];
-};
-
 /*
  * The database's pattern was computed with pi = 3.1416: centres with that pi give it back to the
  * cell, with an exact pi 6 of its 305,826 invalid cells would be taken for holes above the limit.
@@ -47,8 +40,8 @@ static double phi_cosine(double x, double extent, double scale)
 	return cosine;
 }
 
-/* At cell + offset along each axis, angles times `scale`: 0 and 1 for the lower corner, 0.5 and CENTRE_SCALE for the centre. */
-static void cosines_fill(struct lattice_dims dims, double offset, double scale, struct cosines *out)
+/* At cell + offset, |cos| along phi_d, angles times `scale`: 0 and 1 for the lower corner, 0.5 and CENTRE_SCALE the centre. */
+static void cosines_fill(struct lattice_dims dims, double offset, double scale, struct lattice_cosines *out)
 {
 	for (uint32_t i = 0; i < dims.theta_h; i++) {
 		const double root = (i + offset) / dims.theta_h;
@@ -60,8 +53,18 @@ static void cosines_fill(struct lattice_dims dims, double offset, double scale, 
 		out->cos_p[k] = phi_cosine(k + offset, dims.phi_d, scale);
 }
 
-/* Cosines at the lower corner, but |cos phi_d| at its least in the cell: together they give the largest smaller cosine in it. */
-static void highest_fill(struct lattice_dims dims, struct cosines *out)
+void lattice_centres(struct lattice_dims dims, struct lattice_cosines *out)
+{
+	double cosine, sine;
+	cosines_fill(dims, 0.5, 1, out);
+	for (uint32_t k = 0; k < dims.phi_d; k++) {
+		const double t = (2.0 * k + 1) / dims.phi_d;
+		quarter_cos_sin(t <= 1 ? t : 2 - t, &cosine, &sine);
+		out->cos_p[k] = t <= 1 ? cosine : -cosine;
+	}
+}
+
+void lattice_highest(struct lattice_dims dims, struct lattice_cosines *out)
 {
 	cosines_fill(dims, 0, 1, out);
 	for (uint32_t k = 0; k < dims.phi_d; k++) {
@@ -72,8 +75,8 @@ static void highest_fill(struct lattice_dims dims, struct cosines *out)
 
 double lattice_lowest_below(struct lattice_dims dims, const uint8_t *mask)
 {
-	struct cosines highest, centre;
-	highest_fill(dims, &highest);
+	struct lattice_cosines highest, centre;
+	lattice_highest(dims, &highest);
 	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
 	double lowest = 0;
 	for (uint32_t i = 0; i < dims.theta_h; i++)
@@ -101,9 +104,9 @@ double lattice_horizon_limit(const struct lattice *lattice)
 }
 
 /* 1: the smaller cosine at the centre is below the limit; highest: and all the cell below the horizon; NULL: anywhere. */
-static void below_fill(struct lattice_dims dims, double limit, const struct cosines *highest, uint8_t *below)
+static void below_fill(struct lattice_dims dims, double limit, const struct lattice_cosines *highest, uint8_t *below)
 {
-	struct cosines centre;
+	struct lattice_cosines centre;
 	cosines_fill(dims, 0.5, CENTRE_SCALE, &centre);
 	for (uint32_t i = 0; i < dims.theta_h; i++)
 		for (uint32_t j = 0; j < dims.theta_d; j++, below += dims.phi_d) {
@@ -120,8 +123,8 @@ static void below_fill(struct lattice_dims dims, double limit, const struct cosi
 
 void lattice_below_horizon(struct lattice_dims dims, double limit, uint8_t *below)
 {
-	struct cosines highest;
-	highest_fill(dims, &highest);
+	struct lattice_cosines highest;
+	lattice_highest(dims, &highest);
 	below_fill(dims, limit, &highest, below);
 }
 
@@ -129,8 +132,8 @@ void lattice_centre_below(struct lattice_dims dims, double limit, uint8_t *below
 
 void lattice_seen(struct lattice_dims dims, uint8_t *seen)
 {
-	struct cosines highest;
-	highest_fill(dims, &highest);
+	struct lattice_cosines highest;
+	lattice_highest(dims, &highest);
 	double least = 1, most = 0;
 	for (uint32_t k = 0; k < dims.phi_d; k++) {
 		least = fmin(least, highest.cos_p[k]);
@@ -151,7 +154,7 @@ void lattice_seen(struct lattice_dims dims, uint8_t *seen)
 
 void lattice_corner_cosines(struct lattice_dims dims, uint32_t theta_h, float *cosine)
 {
-	struct cosines corner;
+	struct lattice_cosines corner;
 	cosines_fill(dims, 0, 1, &corner);
 	for (uint32_t j = 0; j < dims.theta_d; j++, cosine += dims.phi_d) {
 		const double a = corner.cos_d[j] * corner.cos_h[theta_h], q = corner.sin_d[j] * corner.sin_h[theta_h];

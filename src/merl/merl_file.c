@@ -231,19 +231,14 @@ static void decoded_fill(void *user, int channel, size_t start, size_t count, do
 			values[n] = carried_write(&decoded->carried);
 }
 
-static size_t marked(const uint8_t *mask, size_t cells)
-{
-	size_t count = 0;
-	for (size_t n = 0; n < cells; n++)
-		count += mask[n];
-	return count;
-}
-
 bp_status lattice_write_path(const char *path, enum output_rule rule, const struct expansion *table, const uint8_t *below,
                              const uint8_t *carried, size_t carried_bytes, bp_error *error)
 {
 	struct decoded decoded = {.table = table, .below = below};
-	if (carried && carried_fits(carried_bytes, 3 * marked(below, lattice_cells(table->dims))))
+	size_t marked = 0;
+	for (size_t n = 0; carried && n < lattice_cells(table->dims); n++)
+		marked += below[n];
+	if (carried && carried_fits(carried_bytes, 3 * marked))
 		decoded.carried = (struct carried_writer){.bytes = carried, .count = carried_bytes};
 	return planes_write(path, rule, table->dims, decoded_fill, &decoded, error);
 }

@@ -11,10 +11,8 @@
 bp_status model_fit(const struct lattice *lattice, const struct fit_options *options, struct model **out, bp_error *error)
 {
 	struct model *model;
+	bp_status status;
 
-	bp_status status = lattice_dims_check(lattice->dims, error);
-	if (status)
-		return status;
 	if (!lattice->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "no valid cell: every value is negative, NaN or infinite");
 	model = calloc(1, sizeof *model);
@@ -51,16 +49,23 @@ void model_free(struct model *model)
 	free(model);
 }
 
+/* A new table, or the one that is there where it has the extents. */
+static bp_status expansion_ready(struct lattice_dims dims, struct expansion *out, bp_error *error)
+{
+	if (!out->block)
+		return expansion_alloc(dims, out, error);
+	if (lattice_dims_equal(dims, out->dims))
+		return BP_OK;
+	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the table has %u x %u x %u cells, the model %u x %u x %u",
+	                 out->dims.theta_h, out->dims.theta_d, out->dims.phi_d, dims.theta_h, dims.theta_d, dims.phi_d);
+}
+
 bp_status model_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
 {
-	const struct lattice_dims a = model->dims, b = out->block ? out->dims : a;
-	const bp_status status = out->block ? BP_OK : expansion_alloc(a, out, error);
+	const bp_status status = expansion_ready(model->dims, out, error);
 
 	if (status)
 		return status;
-	if (!lattice_dims_equal(a, b))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the table has %u x %u x %u cells, the model %u x %u x %u",
-		                 b.theta_h, b.theta_d, b.phi_d, a.theta_h, a.theta_d, a.phi_d);
 	if (!layers || layers > model->layer_count)
 		layers = model->layer_count;
 	switch (model->profile) {
@@ -96,11 +101,10 @@ bp_status model_expand_half(const struct model *model, struct expansion *out, bp
 	struct lattice_dims half;
 	struct expansion whole = {0};
 
-	if (!model_has_half(model->dims, &half) || (out->block && !lattice_dims_equal(half, out->dims)))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%u x %u x %u cells are not half of %u x %u x %u",
-		                 out->dims.theta_h, out->dims.theta_d, out->dims.phi_d, model->dims.theta_h, model->dims.theta_d,
-		                 model->dims.phi_d);
-	bp_status status = out->block ? BP_OK : expansion_alloc(half, out, error);
+	if (!model_has_half(model->dims, &half))
+		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%u x %u x %u cells have no halves", model->dims.theta_h,
+		                 model->dims.theta_d, model->dims.phi_d);
+	bp_status status = expansion_ready(half, out, error);
 	if (status)
 		return status;
 	if (model->profile == PROFILE_SPECTRAL)

@@ -27,10 +27,10 @@ void bands_lay_out(uint32_t theta_h, uint32_t theta_d, struct bands *out)
 {
 	const uint32_t levels = spectrum_levels(theta_h, theta_d);
 	*out = (struct bands){0};
-	band_add(out, 0, 0, 0, (theta_h + (1u << levels) - 1) >> levels, (theta_d + (1u << levels) - 1) >> levels, 1);
+	band_add(out, 0, 0, 0, spectrum_extent(theta_h, levels), spectrum_extent(theta_d, levels), 1);
 	for (uint32_t l = levels; l > 0; l--) {
-		const uint32_t rows = (theta_h + (1u << (l - 1)) - 1) >> (l - 1), columns = (theta_d + (1u << (l - 1)) - 1) >> (l - 1);
-		const uint32_t r = (rows + 1) / 2, c = (columns + 1) / 2;
+		const uint32_t rows = spectrum_extent(theta_h, l - 1), columns = spectrum_extent(theta_d, l - 1);
+		const uint32_t r = spectrum_extent(theta_h, l), c = spectrum_extent(theta_d, l);
 		band_add(out, 1, 0, c, r, columns - c, l == levels);
 		band_add(out, 2, r, 0, rows - r, c, l == levels);
 		band_add(out, 3, r, c, rows - r, columns - c, l == levels);

@@ -18,30 +18,24 @@ struct importance {
 static void places_fill(struct importance *m)
 {
 	const struct lattice_dims d = m->dims;
+	struct lattice_cosines c;
 	double sum = 0;
 
+	lattice_centres(d, &c);
 	for (uint32_t i = 0; i < d.theta_h; i++) {
-		const double root = (i + 0.5) / d.theta_h, width = (2.0 * i + 1) / d.theta_h / d.theta_h;
-		double cos_h, sin_h;
-		quarter_cos_sin(root * root, &cos_h, &sin_h);
+		const double width = (2.0 * i + 1) / d.theta_h / d.theta_h;
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			double cos_d, sin_d;
-			quarter_cos_sin((j + 0.5) / d.theta_d, &cos_d, &sin_d);
 			struct importance_place *place = &m->place[i * d.theta_d + j];
-			place->even = (float)(cos_d * cos_h);
-			place->odd = (float)(sin_d * sin_h);
-			place->area = (float)(width * 1.5707963267948966 * sin_h * sin_d * cos_d);
+			place->even = (float)(c.cos_d[j] * c.cos_h[i]);
+			place->odd = (float)(c.sin_d[j] * c.sin_h[i]);
+			place->area = (float)(width * 1.5707963267948966 * c.sin_h[i] * c.sin_d[j] * c.cos_d[j]);
 			place->relative = 0.01f / (float)d.theta_h;
 			sum += (double)place->area;
 			m->chance[i * d.theta_d + j] = sum;
 		}
 	}
-	for (uint32_t k = 0; k < d.phi_d; k++) {
-		const double t = 2 * (k + 0.5) / d.phi_d; /* quarter turns */
-		double c, s;
-		quarter_cos_sin(t <= 1 ? t : 2 - t, &c, &s);
-		m->cos_phi[k] = (float)(t <= 1 ? c : -c);
-	}
+	for (uint32_t k = 0; k < d.phi_d; k++)
+		m->cos_phi[k] = (float)c.cos_p[k];
 }
 
 bp_status importance_create(struct lattice_dims dims, struct importance **out, bp_error *error)

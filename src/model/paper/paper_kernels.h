@@ -27,11 +27,10 @@ struct paper_kernels {
 	void (*mirror_split)(const float *row, size_t n, float *even, float *odd);
 	void (*mirror_join)(const float *even, const float *odd, size_t n, float *row);
 
-	/* sparse_fit.c: value = weight (wanted - value); value = weight value, returns the sum of weight value^2 */
+	/* sparse_fit.c: value = weight (wanted - value); out = weight in, returns the sum of weight in^2 */
 	void (*residual)(const float *weight, const float *wanted, size_t n, float *value);
-	double (*weigh)(const float *weight, size_t n, float *value);
-	/* out = inverse gradient, returns the sum of inverse gradient^2; out += factor x; out = x + factor out */
-	double (*precondition)(const float *inverse, const float *gradient, size_t n, float *out);
+	double (*weigh)(const float *weight, const float *in, size_t n, float *out);
+	/* out += factor x; out = x + factor out */
 	void (*add_scaled)(float factor, const float *x, size_t n, float *out);
 	void (*turn)(float factor, const float *x, size_t n, float *out);
 	/* gain = energy (x + 0.7 gradient/(energy + least))^2 */

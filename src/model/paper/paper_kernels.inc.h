@@ -14,7 +14,6 @@ const struct paper_kernels KERNEL(paper_kernels) = {
 	.mirror_join = KERNEL(mirror_join),
 	.residual = KERNEL(residual),
 	.weigh = KERNEL(weigh),
-	.precondition = KERNEL(precondition),
 	.add_scaled = KERNEL(add_scaled),
 	.turn = KERNEL(turn),
 	.gains = KERNEL(gains),

@@ -12,39 +12,21 @@ static void KERNEL(residual)(const float *weight, const float *wanted, size_t n,
 		value[i] = weight[i] * (wanted[i] - value[i]);
 }
 
-static double KERNEL(weigh)(const float *weight, size_t n, float *value)
+static double KERNEL(weigh)(const float *weight, const float *in, size_t n, float *out)
 {
 	floats8 sum = {0};
 	double rest = 0;
 	size_t i = 0;
 
 	for (; i + 8 <= n; i += 8) {
-		const floats8 v = FLOATS8_LOAD(value + i), w = FLOATS8_LOAD(weight + i) * v;
-		FLOATS8_STORE(value + i, w);
+		const floats8 v = FLOATS8_LOAD(in + i), w = FLOATS8_LOAD(weight + i) * v;
+		FLOATS8_STORE(out + i, w);
 		sum += v * w;
 	}
 	for (; i < n; i++) {
-		const float v = value[i];
-		value[i] = weight[i] * v;
-		rest += (double)(v * value[i]);
-	}
-	return KERNEL(lanes8_sum)(&sum) + rest;
-}
-
-static double KERNEL(precondition)(const float *inverse, const float *gradient, size_t n, float *out)
-{
-	floats8 sum = {0};
-	double rest = 0;
-	size_t i = 0;
-
-	for (; i + 8 <= n; i += 8) {
-		const floats8 g = FLOATS8_LOAD(gradient + i), z = FLOATS8_LOAD(inverse + i) * g;
-		FLOATS8_STORE(out + i, z);
-		sum += g * z;
-	}
-	for (; i < n; i++) {
-		out[i] = inverse[i] * gradient[i];
-		rest += (double)(gradient[i] * out[i]);
+		const float v = in[i];
+		out[i] = weight[i] * v;
+		rest += (double)(v * out[i]);
 	}
 	return KERNEL(lanes8_sum)(&sum) + rest;
 }

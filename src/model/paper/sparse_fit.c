@@ -127,18 +127,18 @@ void sparse_fit_refine(struct sparse_fit *fit, const struct sparse_target *targe
 	}
 	if (dropped)
 		sparse_fit_gradient(fit, target, x);
-	double size = kernels->precondition(fit->inverse, fit->gradient, n, fit->direction);
+	double size = kernels->weigh(fit->inverse, fit->gradient, n, fit->direction);
 	const double noise = fmax(SETTLED * size, ROUNDING * explained); /* below it single precision has no direction left to go */
 	for (uint32_t step = 0; step < steps && size > noise; step++) {
 		wavelet_inverse(&fit->plane, fit->direction, fit->field, fit->scratch);
-		const double curvature = kernels->weigh(target->weight, fit->cells, fit->field);
+		const double curvature = kernels->weigh(target->weight, fit->field, fit->cells, fit->field);
 		if (!(curvature > 0))
 			break;
 		const float length = (float)(size / curvature);
 		wavelet_forward(&fit->plane, fit->field, fit->image, fit->scratch);
 		kernels->add_scaled(length, fit->direction, n, x);
 		kernels->add_scaled(-length, fit->image, n, fit->gradient);
-		const double next = kernels->precondition(fit->inverse, fit->gradient, n, fit->z);
+		const double next = kernels->weigh(fit->inverse, fit->gradient, n, fit->z);
 		kernels->turn((float)(next / size), fit->z, n, fit->direction);
 		size = next;
 	}

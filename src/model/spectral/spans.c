@@ -24,32 +24,22 @@ struct span_cosines {
 
 static uint32_t padded(uint32_t columns) { return (columns + COLUMNS - 1) / COLUMNS * COLUMNS; }
 
-/* |cos phi_d| at its least in cell k of a row's first half: at its end, where it is not the middle one of an odd number. */
-static void leasts_fill(uint32_t p, double least[LATTICE_EXTENT_MAX])
-{
-	double sine;
-	for (uint32_t k = 0; k < (p + 1) / 2; k++)
-		quarter_cos_sin(2 * (k + 1) <= p ? 2.0 * (k + 1) / p : 1, &least[k], &sine);
-}
-
 float spans_limit(const struct lattice *lattice)
 {
 	const struct lattice_dims d = lattice->dims;
-	double least[LATTICE_EXTENT_MAX], lowest = 1;
+	struct lattice_cosines c;
+	double lowest = 1;
 
-	leasts_fill(d.phi_d, least);
+	lattice_highest(d, &c);
 	for (uint32_t i = 0; i < d.theta_h; i++)
 		for (uint32_t j = 0; j < d.theta_d; j++) {
 			const uint8_t *valid = lattice->valid + lattice_index(d, i, j, 0);
-			double cos_h, sin_h, cos_d, sin_d;
 			uint32_t k = 0;
 			while (k < (d.phi_d + 1) / 2 && !valid[k] && !valid[d.phi_d - 1 - k])
 				k++;
 			if (k == (d.phi_d + 1) / 2)
 				continue;
-			quarter_cos_sin((double)i / d.theta_h * ((double)i / d.theta_h), &cos_h, &sin_h);
-			quarter_cos_sin((double)j / d.theta_d, &cos_d, &sin_d);
-			lowest = fmin(lowest, cos_h * cos_d - sin_h * sin_d * least[k]);
+			lowest = fmin(lowest, c.cos_h[i] * c.cos_d[j] - c.sin_h[i] * c.sin_d[j] * c.cos_p[k]);
 		}
 	/* A little less, so that neither rounding nor binary32 decides about the cell itself. */
 	return fmaxf((float)(lowest * (1 - 0x1p-16)), SPAN_MARGIN);
@@ -58,17 +48,13 @@ float spans_limit(const struct lattice *lattice)
 void spans_find(struct lattice_dims d, float limit, uint16_t *span)
 {
 	const uint32_t half = (d.phi_d + 1) / 2;
-	double least[LATTICE_EXTENT_MAX], cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX];
+	struct lattice_cosines c;
 
-	leasts_fill(d.phi_d, least);
-	for (uint32_t j = 0; j < d.theta_d; j++)
-		quarter_cos_sin((double)j / d.theta_d, &cos_d[j], &sin_d[j]);
+	lattice_highest(d, &c);
 	for (uint32_t i = 0; i < d.theta_h; i++) {
-		double cos_h, sin_h;
 		uint32_t k = 0; /* the first above the limit, or `half`: the larger theta_d, the later */
-		quarter_cos_sin((double)i / d.theta_h * ((double)i / d.theta_h), &cos_h, &sin_h);
 		for (uint32_t j = 0; j < d.theta_d; j++) {
-			while (k < half && limit > 0 && !(cos_h * cos_d[j] - sin_h * sin_d[j] * least[k] > (double)limit))
+			while (k < half && limit > 0 && !(c.cos_h[i] * c.cos_d[j] - c.sin_h[i] * c.sin_d[j] * c.cos_p[k] > (double)limit))
 				k++;
 			*span++ = (uint16_t)(k < half ? d.phi_d - 2 * k : 2 - d.phi_d % 2);
 		}

@@ -20,27 +20,6 @@ static const struct spectral_light LIGHTS[] = {
 	{0.03, 150}, {0.15, 24}, {1, 3}, {3, 1}}; /* those of a sky, weak and strong lamps, where white is 1 */
 enum { LIGHT_COUNT = sizeof LIGHTS / sizeof *LIGHTS };
 
-/* Cosines and sines of the cells' centres. */
-struct centres {
-	double cos_h[LATTICE_EXTENT_MAX], sin_h[LATTICE_EXTENT_MAX], cos_d[LATTICE_EXTENT_MAX], sin_d[LATTICE_EXTENT_MAX],
-		cos_p[LATTICE_EXTENT_MAX];
-};
-
-static void centres_fill(struct lattice_dims d, struct centres *out)
-{
-	double sine;
-	for (uint32_t i = 0; i < d.theta_h; i++) {
-		const double root = (i + 0.5) / d.theta_h;
-		quarter_cos_sin(root * root, &out->cos_h[i], &out->sin_h[i]);
-	}
-	for (uint32_t j = 0; j < d.theta_d; j++)
-		quarter_cos_sin((j + 0.5) / d.theta_d, &out->cos_d[j], &out->sin_d[j]);
-	for (uint32_t k = 0; k < d.phi_d; k++) {
-		const double t = (2 * k + 1.0) / d.phi_d; /* |cos| is symmetric about pi/2 */
-		quarter_cos_sin(t <= 1 ? t : 2 - t, &out->cos_p[k], &sine);
-	}
-}
-
 /* What is gathered of a region. */
 struct region {
 	double picture; /* sum of worths */
@@ -49,7 +28,7 @@ struct region {
 
 struct survey {
 	const struct lattice *lattice;
-	const struct centres *centres;
+	const struct lattice_cosines *centres;
 	double factor;          /* of values */
 	double *bins;           /* first pass: shares of directions by log2 of value times cosine, BINS from 2^-64 on */
 	struct region *regions; /* second pass: values are in units of white */
@@ -64,7 +43,7 @@ static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 	const struct spectral_kernels *kernels = spectral_kernels_get();
 	const struct lattice *lattice = s->lattice;
 	const struct lattice_dims d = lattice->dims;
-	const struct centres *c = s->centres;
+	const struct lattice_cosines *c = s->centres;
 	const uint32_t every = d.phi_d < ROW_SPARSE ? 1 : EVERY;
 	const size_t row = lattice_index(d, i, j, 0);
 	/* Pairs of directions in a cell, but for a factor: sin theta_h d theta_h cos theta_d sin theta_d d theta_d d phi_d. */
@@ -75,7 +54,7 @@ static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 	size_t n = 0;
 
 	for (uint32_t k = (3 * i + 5 * j) % every; k < d.phi_d; k += every) {
-		const double a = c->cos_d[j] * c->cos_h[i], b = c->sin_d[j] * c->sin_h[i] * c->cos_p[k];
+		const double a = c->cos_d[j] * c->cos_h[i], b = c->sin_d[j] * c->sin_h[i] * fabs(c->cos_p[k]);
 		if (region)
 			region->cells++;
 		if (!lattice->valid[row + k] || a - b <= 0)
@@ -128,14 +107,14 @@ void spectral_weights_find(const struct lattice *lattice, double unit, struct sp
 	const struct lattice_dims d = lattice->dims;
 	double bins[BINS] = {0}, steps[SPECTRAL_WEIGHTS], finest = INFINITY, picture = 0, cells = 0;
 	struct region regions[SPECTRAL_WEIGHTS] = {0};
-	struct centres centres;
+	struct lattice_cosines centres;
 	struct survey survey = {.lattice = lattice, .centres = &centres, .factor = 1 / unit, .bins = bins};
 
 	memset(out, 0, sizeof *out);
 	if (d.theta_h < LEAST_CELLS || d.theta_d < LEAST_CELLS)
 		return;
 	out->graded = true;
-	centres_fill(d, &centres);
+	lattice_centres(d, &centres);
 	table_survey(&survey);
 	survey.factor /= white_of(bins);
 	survey.regions = regions;
