@@ -63,7 +63,7 @@ static void moments_weigh_large_coefficients_less(void **unused)
 			want[n] += w * product[n];
 	}
 	for (int n = 0; n < SPECTRAL_TABLES; n++)
-		spectral_table(n)->spectral_moments((const float *const[]){x[0], x[1], x[SPECTRAL_TABLES]}, N, got[n]);
+		spectral_table(n)->spectral_moments((const float *const[]){x[0], x[1], x[2]}, N, got[n]);
 	for (int n = 0; n < 6; n++)
 		assert_true(fabs(got[0][n] - want[n]) < 1e-10);
 	assert_alike(got, sizeof got[0]);

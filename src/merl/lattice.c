@@ -100,24 +100,29 @@ static ALWAYS_INLINE double block_largest(const double *v, size_t count, double 
 	return largest;
 }
 
-AVX2_CLONE double lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state)
+enum { SCAN_BLOCK = 256 };
+
+/* Flags as wide as the values, so that both loops vectorise. */
+AVX2_CLONE static double block_scan(double *restrict v, size_t count, double scale, uint8_t *restrict state, double largest)
 {
-	/* In blocks with flags as wide as the values, so that both loops vectorise. */
-	enum { BLOCK = 256 };
-	double flags[BLOCK], largest = 0;
-	for (size_t start = 0; start < count; start += BLOCK) {
-		const size_t block = count - start < BLOCK ? count - start : BLOCK;
-		double *v = values + start;
-		for (size_t n = 0; n < block; n++) {
-			const bool finite = fabs(v[n]) <= DBL_MAX; /* false for NaN, as is the next */
-			const bool measured = v[n] >= 0;
-			flags[n] = (measured ? 0.0 : CELL_NEGATIVE) + (finite ? 0.0 : CELL_NONFINITE);
-			v[n] = ((measured & finite) ? v[n] : 0.0) * scale + 0.0; /* + 0.0 turns -0.0 into 0.0 */
-		}
-		for (size_t n = 0; n < block; n++)
-			state[start + n] |= (uint8_t)(int)flags[n];
-		largest = block_largest(v, block, largest);
+	double flags[SCAN_BLOCK];
+	for (size_t n = 0; n < count; n++) {
+		const bool finite = fabs(v[n]) <= DBL_MAX; /* false for NaN, as is the next */
+		const bool measured = v[n] >= 0;
+		flags[n] = (measured ? 0.0 : CELL_NEGATIVE) + (finite ? 0.0 : CELL_NONFINITE);
+		v[n] = ((measured & finite) ? v[n] : 0.0) * scale + 0.0; /* + 0.0 turns -0.0 into 0.0 */
 	}
+	for (size_t n = 0; n < count; n++)
+		state[n] |= (uint8_t)(int)flags[n];
+	return block_largest(v, count, largest);
+}
+
+double lattice_scan(double *restrict values, size_t count, double scale, uint8_t *restrict state)
+{
+	double largest = 0;
+	for (size_t start = 0; start < count; start += SCAN_BLOCK)
+		largest =
+			block_scan(values + start, count - start < SCAN_BLOCK ? count - start : SCAN_BLOCK, scale, state + start, largest);
 	return largest;
 }
 

@@ -7,20 +7,26 @@
 
 enum { BIN_SHIFT = 23 - 4 }; /* of a float's bits: RATE_PER_OCTAVE = 2^4 */
 
-static inline uint32_t size_bits(float coefficient) { return bits_of_float(coefficient) & 0x7fffffff; }
+static ALWAYS_INLINE uint32_t size_bits(float coefficient) { return bits_of_float(coefficient) & 0x7fffffff; }
 
-AVX2_CLONE void rate_measure(const struct spectral_model *model, struct lattice_dims d, struct rate *out)
+/* The largest of n and `largest`, as bits: sizes are in order as floats as they are as integers, which vectorises. */
+AVX2_CLONE static int32_t largest_bits(const float *coefficient, size_t n, int32_t largest)
+{
+	for (size_t i = 0; i < n; i++) {
+		const int32_t bits = (int32_t)size_bits(coefficient[i]);
+		largest = bits > largest ? bits : largest;
+	}
+	return largest;
+}
+
+void rate_measure(const struct spectral_model *model, struct lattice_dims d, struct rate *out)
 {
 	const size_t rows = (size_t)d.theta_h * d.theta_d, cells = rows * d.phi_d;
 	uint32_t bins[RATE_BINS] = {0};
 	int32_t largest = 0;
 
 	for (int f = 0; f < 3; f++) {
-		/* Sizes in order as floats are in order as integers, which vectorises. */
-		for (size_t i = 0; i < cells; i++) {
-			const int32_t bits = (int32_t)size_bits(model->coefficient[f][i]);
-			largest = bits > largest ? bits : largest;
-		}
+		largest = largest_bits(model->coefficient[f], cells, largest);
 		for (size_t r = 1; r < rows; r += 3)
 			for (size_t k = r * d.phi_d; k < (r + 1) * d.phi_d; k++)
 				bins[size_bits(model->coefficient[f][k]) >> BIN_SHIFT]++;

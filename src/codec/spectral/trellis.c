@@ -107,7 +107,7 @@ static ALWAYS_INLINE uint32_t cell_choose(struct trellis_cell *cell, const struc
 	return from;
 }
 
-AVX2_CLONE void trellis_choose(struct trellis_cell *cells, uint32_t count, struct trellis_costs *costs)
+AVX2_CLONE static void choose(struct trellis_cell *cells, uint32_t count, struct trellis_costs *costs)
 {
 	lanes4 first = {0, NEVER, NEVER, NEVER}, second = {NEVER, NEVER, NEVER, NEVER};
 	uint32_t state = 0;
@@ -127,3 +127,5 @@ AVX2_CLONE void trellis_choose(struct trellis_cell *cells, uint32_t count, struc
 	for (uint32_t i = count; i-- > 0;)
 		state = cell_choose(&cells[i], &costs[i], state);
 }
+
+void trellis_choose(struct trellis_cell *cells, uint32_t count, struct trellis_costs *costs) { choose(cells, count, costs); }
