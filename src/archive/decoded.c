@@ -58,23 +58,20 @@ static void channel_put(const struct expansion *table, int c, const uint8_t *bel
 	}
 }
 
-static bp_status table_put(const struct model *model, const bp_table_options *options, void *values, bp_error *error)
+static bp_status table_put(const struct expansion *table, double horizon_limit, const bp_table_options *options, void *values,
+                           bp_error *error)
 {
-	struct expansion table = {0};
 	uint8_t *below = NULL;
-	bp_status status = model_expand(model, 0, &table, error);
-	if (!status && !options->continued) {
-		below = malloc(lattice_cells(model->dims));
-		if (below)
-			lattice_below_horizon(model->dims, model->horizon_limit, below);
-		else
-			status = error_memory(error, lattice_cells(model->dims));
+	if (!options->continued) {
+		below = malloc(lattice_cells(table->dims));
+		if (!below)
+			return error_memory(error, lattice_cells(table->dims));
+		lattice_below_horizon(table->dims, horizon_limit, below);
 	}
-	for (int c = 0; !status && c < CHANNELS; c++)
-		channel_put(&table, c, below, options, values);
+	for (int c = 0; c < CHANNELS; c++)
+		channel_put(table, c, below, options, values);
 	free(below);
-	expansion_free(&table);
-	return status;
+	return BP_OK;
 }
 
 bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values, size_t bytes,
@@ -83,7 +80,7 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
 	const bp_table_options usual = {.struct_bytes = sizeof usual};
 	struct index_entry entry;
 	struct record_head head;
-	struct model *model = NULL;
+	struct expansion table = {0};
 	fenv_t before;
 
 	options = options ? options : &usual;
@@ -98,10 +95,10 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
 		                 "%s: a table of %u x %u x %u cells takes %zu bytes, there is room for %zu", head.name, head.dims.theta_h,
 		                 head.dims.theta_d, head.dims.phi_d, wanted, values ? bytes : 0);
 	environment_enter(&before);
-	status = archive_entry_load(archive, &entry, &head, record_layers_for(&head, options->max_log_rmse), &model, error);
+	status = archive_entry_expand(archive, &entry, &head, record_layers_for(&head, options->max_log_rmse), &table, error);
 	if (!status)
-		status = table_put(model, options, values, error);
-	model_free(model);
+		status = table_put(&table, head.horizon_limit, options, values, error);
+	expansion_free(&table);
 	environment_leave(&before);
 	return status;
 }

@@ -99,11 +99,9 @@ bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t 
 
 bp_status bp_archive_record(const bp_archive *archive, uint64_t index, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
-	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
-	leaf.count = 0;
-	bp_status status = archive_entry(archive, index, &leaf, &entry, error);
+	bp_status status = archive_entry(archive, index, NULL, &entry, error);
 	if (!status)
 		status = archive_entry_record(archive, &entry, &head, record, error);
 	if (!status)

@@ -193,6 +193,11 @@ static bp_status leaf_find(const struct bp_archive *archive, const char *name, u
 bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct index_page *leaf, struct index_entry *entry,
                         bp_error *error)
 {
+	struct index_page own;
+	if (!leaf) {
+		own.count = 0;
+		leaf = &own;
+	}
 	if (index >= archive->header.count)
 		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material %llu; the archive has %llu",
 		                 (unsigned long long)index, (unsigned long long)archive->header.count);
@@ -210,10 +215,8 @@ bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct
 
 bp_status bp_archive_name(const bp_archive *archive, uint64_t index, char name[BP_NAME_BYTES_MAX + 1], bp_error *error)
 {
-	struct index_page leaf;
 	struct index_entry entry;
-	leaf.count = 0;
-	bp_status status = archive_entry(archive, index, &leaf, &entry, error);
+	const bp_status status = archive_entry(archive, index, NULL, &entry, error);
 	if (!status)
 		memcpy(name, entry.name, entry.name_bytes + 1);
 	return status;
@@ -297,9 +300,7 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct index_entry *entry,
                               struct record_head *head, bp_error *error)
 {
-	struct index_page leaf;
-	leaf.count = 0;
-	const bp_status status = archive_entry(archive, index, &leaf, entry, error);
+	const bp_status status = archive_entry(archive, index, NULL, entry, error);
 	return status ? status : archive_entry_head(archive, entry, head, error);
 }
 
@@ -320,6 +321,17 @@ bp_status archive_entry_load(const struct bp_archive *archive, const struct inde
 {
 	struct fetch_place place = {.archive = archive, .offset = entry->offset};
 	return error_shift(record_decode(head, layers, record_fetch, &place, out, error), entry->offset, error);
+}
+
+bp_status archive_entry_expand(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                               uint32_t layers, struct expansion *table, bp_error *error)
+{
+	struct model *model = NULL;
+	bp_status status = archive_entry_load(archive, entry, head, layers, &model, error);
+	if (!status)
+		status = model_expand(model, 0, table, error);
+	model_free(model);
+	return status;
 }
 
 bp_status archive_model_load(const struct bp_archive *archive, uint64_t index, uint32_t layers, struct model **out,

@@ -59,12 +59,8 @@ static void problem_tell(struct walk *walk, const char *material, uint64_t offse
 static bp_status layer_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                              uint32_t layers, struct expansion *table, bp_error *error)
 {
-	struct model *model = NULL;
-	size_t cells = lattice_cells(head->dims);
-	bp_status status = archive_entry_load(archive, entry, head, layers, &model, error);
-	if (!status)
-		status = model_expand(model, 0, table, error);
-	model_free(model);
+	const size_t cells = lattice_cells(head->dims);
+	const bp_status status = archive_entry_expand(archive, entry, head, layers, table, error);
 	if (status)
 		return status;
 	if (!(table->unit > 0 && isfinite(table->unit)))
