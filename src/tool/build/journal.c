@@ -1,6 +1,7 @@
 #include "journal.h"
 
 #include "bytes.h"
+#include "descriptor.h"
 #include "error.h"
 
 #include <errno.h>
@@ -11,16 +12,9 @@
 
 static bp_status put(int fd, const uint8_t *bytes, size_t count, uint64_t offset, bp_error *error)
 {
-	for (size_t done = 0; done < count;) {
-		const ssize_t written = pwrite(fd, bytes + done, count - done, (off_t)(offset + done));
-		if (written < 0 && errno == EINTR)
-			continue;
-		if (written <= 0)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot write beside it: %s",
-			                 strerror(written < 0 ? errno : ENOSPC));
-		done += (size_t)written;
-	}
-	return BP_OK;
+	if (descriptor_write(fd, bytes, count, (off_t)offset) == count)
+		return BP_OK;
+	return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot write beside it: %s", strerror(errno));
 }
 
 /* What an entry's head says of its record. */
@@ -48,16 +42,10 @@ bp_status journal_add(struct journal *journal, const uint8_t *record, size_t rec
 
 static bp_status get(int fd, uint8_t *bytes, size_t count, uint64_t offset, bp_error *error)
 {
-	for (size_t done = 0; done < count;) {
-		const ssize_t got = pread(fd, bytes + done, count - done, (off_t)(offset + done));
-		if (got < 0 && errno == EINTR)
-			continue;
-		if (got <= 0)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the finished records beside it: %s",
-			                 strerror(got < 0 ? errno : EIO));
-		done += (size_t)got;
-	}
-	return BP_OK;
+	if (descriptor_read(fd, bytes, count, (off_t)offset) == count)
+		return BP_OK;
+	return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the finished records beside it: %s",
+	                 strerror(errno ? errno : EIO));
 }
 
 bp_status journal_read(const struct journal *journal, uint64_t offset, uint8_t *record, uint32_t record_bytes, bp_error *error)
