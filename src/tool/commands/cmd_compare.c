@@ -215,7 +215,7 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	                                    {"size", 0, option_integer, &size, 1, COMPARE_SIZE_MAX},
 	                                    {"json", 0, option_flag, .to = &compare.report.json},
 	                                    {"images", 0, option_text, .to = &compare.images},
-	                                    {"jobs", 'j', option_jobs, .to = &compare.workers},
+	                                    {"jobs", 'j', option_integer, &compare.workers, 1, WORKERS_MAX},
 	                                    {"force", 0, option_flag, .to = &compare.force},
 	                                    {0}};
 	int code = options_read(self, argc, argv, rules);
