@@ -163,11 +163,8 @@ static bp_status materials_measure(struct compare *compare, bp_error *error)
 	                                        .work_user = &compare->job,
 	                                        .result = result_take,
 	                                        .result_user = compare};
-	struct lattice_dims dims;
 	compare->job.items = compare->measured.item;
-	/* before the fork, so that the workers share the plans' memory */
-	bp_status status =
-		selection_dims(&compare->selection, &dims) ? comparison_plans_make(&compare->job.plans, dims, error) : BP_OK;
+	const bp_status status = selection_plans_make(&compare->selection, &compare->job.plans, error);
 	return status == BP_OK ? workers_run(&options, compare->measured.name, compare->count, error) : status;
 }
 
