@@ -19,10 +19,7 @@ static bp_status refuse(const char *path, const char *what, bp_error *error)
 	return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot %s: %s", path, what, strerror(errno));
 }
 
-static bp_status refuse_taken(const char *path, bp_error *error)
-{
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: is there already", path);
-}
+static bp_status refuse_taken(const char *path, bp_error *error) { return error_argument(error, "%s: is there already", path); }
 
 /* What replaces a file is nobody else's to read before it has that file's mode. */
 static mode_t mode_of(const struct output_file *out) { return out->replaces ? 0600 : 0666; }

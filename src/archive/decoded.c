@@ -27,17 +27,16 @@ size_t bp_table_bytes(uint32_t theta_h, uint32_t theta_d, uint32_t phi_d, const 
 static bp_status options_check(const bp_table_options *options, bp_error *error)
 {
 	if (options->struct_bytes != sizeof *options)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_table_options) = %zu",
-		                 options->struct_bytes, sizeof *options);
+		return error_argument(error, "struct_bytes is %zu, not sizeof(bp_table_options) = %zu", options->struct_bytes,
+		                      sizeof *options);
 	if (!number_bytes(options->number))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no kind of number %d", (int)options->number);
+		return error_argument(error, "there is no kind of number %d", (int)options->number);
 	if (options->layout != BP_LAYOUT_PLANES && options->layout != BP_LAYOUT_INTERLEAVED)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no layout %d", (int)options->layout);
+		return error_argument(error, "there is no layout %d", (int)options->layout);
 	if (options->continued != 0 && options->continued != 1)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "continued is %d, it must be 0 or 1", options->continued);
+		return error_argument(error, "continued is %d, it must be 0 or 1", options->continued);
 	if (!(options->max_log_rmse >= 0))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more",
-		                 options->max_log_rmse);
+		return error_argument(error, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
 	return BP_OK;
 }
 
@@ -91,9 +90,8 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
 		return status;
 	const size_t wanted = bp_table_bytes(head.dims.theta_h, head.dims.theta_d, head.dims.phi_d, options);
 	if (!values || bytes != wanted)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "%s: a table of %u x %u x %u cells takes %zu bytes, there is room for %zu", head.name, head.dims.theta_h,
-		                 head.dims.theta_d, head.dims.phi_d, wanted, values ? bytes : 0);
+		return error_argument(error, "%s: a table of %u x %u x %u cells takes %zu bytes, there is room for %zu", head.name,
+		                      head.dims.theta_h, head.dims.theta_d, head.dims.phi_d, wanted, values ? bytes : 0);
 	environment_enter(&before);
 	status = archive_entry_expand(archive, &entry, &head, record_layers_for(&head, options->max_log_rmse), &table, error);
 	if (!status)

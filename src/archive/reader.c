@@ -107,7 +107,7 @@ bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
 	uint64_t file_bytes = 0;
 
 	if (!path || !out)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a path and a place for the handle are needed");
+		return error_argument(error, "a path and a place for the handle are needed");
 	bp_status status = archive_new(path, &archive, error);
 	if (status)
 		return status;
@@ -124,8 +124,7 @@ bp_status bp_archive_open_source(const bp_source *source, bp_archive **out, bp_e
 	struct bp_archive *archive = NULL;
 
 	if (!source || !out || source->struct_bytes != sizeof *source || !source->read)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "a bp_source with struct_bytes and read, and a place for the handle are needed");
+		return error_argument(error, "a bp_source with struct_bytes and read, and a place for the handle are needed");
 	bp_status status = archive_new("", &archive, error);
 	if (status)
 		return status;
@@ -145,7 +144,7 @@ bp_status bp_archive_open_memory(const void *bytes, size_t count, bp_archive **o
 	const bp_source source = {
 		.struct_bytes = sizeof source, .read = memory_read, .user = (void *)(uintptr_t)bytes, .bytes = count};
 	if (!bytes)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the archive's bytes are needed");
+		return error_argument(error, "the archive's bytes are needed");
 	return bp_archive_open_source(&source, out, error);
 }
 
@@ -227,7 +226,7 @@ bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t 
 	struct index_page leaf;
 	uint32_t i, bytes;
 	if (!name || !index)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a name and a place for its number are needed");
+		return error_argument(error, "a name and a place for its number are needed");
 	bp_status status = leaf_find(archive, name, 0, &leaf, error);
 	if (status)
 		return status;

@@ -176,7 +176,7 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
 	bp_error problem;
 
 	if (!archive || flags & ~BP_VERIFY_DEEP)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no archive, or unknown flags");
+		return error_argument(error, "no archive, or unknown flags");
 	const struct archive_header *header = archive_header(archive);
 	walk.next_offset = ARCHIVE_HEADER_BYTES;
 	if (archive_read(archive, 0, bytes, sizeof bytes, &problem) != BP_OK ||

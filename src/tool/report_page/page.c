@@ -218,9 +218,8 @@ int page_run(const struct page_options *options, struct selection *selection)
 	viewer_find(page);
 	bp_status status = items_read(page, &error);
 	if (status == BP_OK && options->embed && !page->viewer)
-		status = error_set(&error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                   "--embed: the viewer is not there, so nothing could read the archive; "
-		                   "`make viewer` builds it (Debian package emscripten)");
+		status = error_argument(&error, "--embed: the viewer is not there, so nothing could read the archive; "
+		                                "`make viewer` builds it (Debian package emscripten)");
 	if (status == BP_OK && options->measured)
 		status = measured_find(page, options->measured, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */
