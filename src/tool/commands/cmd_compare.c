@@ -30,7 +30,6 @@ struct compare {
 	struct measured_set measured; /* a name is NULL where there is nothing to measure */
 	struct compare_item *items;
 	size_t count, printed, failed;
-	bool headed;      /* the table's head has been printed */
 	bool images_made; /* the pictures' folder is ours */
 	struct compare_job job;
 };
@@ -129,9 +128,6 @@ static void rows_print(struct compare *compare)
 			report_error(compare->archive_path, item->name, &item->error);
 		if (item->error.status)
 			continue;
-		if (!compare->headed)
-			compare_report_head(&compare->report);
-		compare->headed = true;
 		compare_report_row(&compare->report, item);
 	}
 	fflush(stdout);

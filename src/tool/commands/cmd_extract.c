@@ -124,10 +124,7 @@ static bp_status json_write(const struct record_head *head, const struct origin 
 	FILE *memory = memory_stream_open(&text);
 	if (!memory)
 		return error_memory(error, BUFSIZ);
-	struct json json = json_begin(memory, true);
-	json_string(&json, "name", head->name);
-	facts_full(&json, head, origin);
-	json_finish(&json);
+	facts_print(memory, true, head, origin);
 	fclose(memory);
 	bp_status status =
 		text.failed ? error_memory(error, text.count) : output_file_write_whole(path, rule, text.bytes, text.count, error);
