@@ -157,17 +157,6 @@ static void pair_evaluate(const struct pairs *pairs, size_t n, exported_evaluate
 	evaluate(exported, wi, wo, value);
 }
 
-static void exported_draw(const struct pairs *pairs, const struct shaded *shaded, exported_evaluate *evaluate,
-                          const void *exported, float *pixels)
-{
-	for (size_t k = 0; k < pairs->count; k++) {
-		double value[3];
-		pair_evaluate(pairs, k, evaluate, exported, value);
-		for (int c = 0; c < 3; c++)
-			pixels[3 * shaded[k].pixel + (uint32_t)c] += (float)value[c] * shaded[k].weight;
-	}
-}
-
 static double albedo_deviation(int n, const struct deviation_reference *reference, exported_evaluate *evaluate,
                                const void *exported)
 {
@@ -189,9 +178,15 @@ static double albedo_deviation(int n, const struct deviation_reference *referenc
 static bp_status sphere_deviation(int n, const struct deviation_reference *reference, exported_evaluate *evaluate,
                                   const void *exported, struct sphere_image *image, double *psnr, bp_error *error)
 {
+	const struct shaded *shaded = reference->shaded[n];
 	struct psnr figure;
 	memset(image->rgb, 0, 3 * sizeof(float) * SIZE * SIZE);
-	exported_draw(&reference->pairs[n], reference->shaded[n], evaluate, exported, image->rgb);
+	for (size_t k = 0; k < reference->pairs[n].count; k++) {
+		double value[3];
+		pair_evaluate(&reference->pairs[n], k, evaluate, exported, value);
+		for (int c = 0; c < 3; c++)
+			image->rgb[3 * shaded[k].pixel + (uint32_t)c] += (float)value[c] * shaded[k].weight;
+	}
 	const bp_status status = metrics_psnr(&reference->image[n], image, &figure, error);
 	*psnr = status ? 0 : figure.real;
 	return status;
