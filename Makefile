@@ -38,7 +38,7 @@ TOOL_C       := $(wildcard $(TOOL_ONLY)) $(wildcard src/render/*.c) $(wildcard s
 # Measured files of every format, read and written: for who packs.
 MEASURED_C   := $(wildcard src/rgl/*.c) $(addprefix src/merl/,merl_file.c carried.c foreign.c holes.c input.c origin.c rgl_file.c rgl_lattice.c two_halves.c)
 # The half that only reads: what is left of these sources when the linker drops what no function of it calls.
-WRITER_C     := $(addprefix src/,output_file.c output_file_sweep.c output_path.c) $(MEASURED_C) \
+WRITER_C     := $(addprefix src/,descriptor.c output_file.c output_file_sweep.c output_path.c) $(MEASURED_C) \
 	$(addprefix src/codec/record_,carried.c copy.c encode.c head_write.c) \
 	$(addprefix src/archive/,gather.c index_write.c merge.c pack.c recover.c writer.c)
 READER_C     := $(filter-out $(WRITER_C) $(wildcard src/model/fidelity*.c),$(LIBRARY_C))

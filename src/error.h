@@ -17,6 +17,9 @@
 bp_status error_set(bp_error *error, bp_status status, uint64_t offset, const char *format, ...)
 	__attribute__((format(printf, 4, 5)));
 
+/* The same for what a caller has got wrong, which is at no place of a file. */
+#define error_argument(error, ...) error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, __VA_ARGS__)
+
 /* An offset within a part becomes one within what the part begins at `base` of; returns status. */
 bp_status error_shift(bp_status status, uint64_t base, bp_error *error);
 

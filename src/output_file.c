@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "descriptor.h"
 #include "error.h"
 #include "output_path.h"
 
@@ -18,10 +19,7 @@ static bp_status refuse(const char *path, const char *what, bp_error *error)
 	return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot %s: %s", path, what, strerror(errno));
 }
 
-static bp_status refuse_taken(const char *path, bp_error *error)
-{
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: is there already", path);
-}
+static bp_status refuse_taken(const char *path, bp_error *error) { return error_argument(error, "%s: is there already", path); }
 
 /* What replaces a file is nobody else's to read before it has that file's mode. */
 static mode_t mode_of(const struct output_file *out) { return out->replaces ? 0600 : 0666; }
@@ -113,39 +111,23 @@ bp_status output_file_open(const char *path, enum output_rule rule, struct outpu
 static int same_bytes(int fd, const uint8_t *bytes, size_t count)
 {
 	uint8_t there[COMPARE_BYTES];
-	while (count) {
-		const ssize_t got = read(fd, there, count < sizeof there ? count : sizeof there);
-		if (got < 0 && errno == EINTR)
-			continue;
-		if (got < 0)
-			return -1;
-		if (got == 0 || memcmp(there, bytes, (size_t)got) != 0)
+	for (size_t some; count; bytes += some, count -= some) {
+		some = count < sizeof there ? count : sizeof there;
+		if (descriptor_read(fd, there, some, -1) < some)
+			return errno ? -1 : 0;
+		if (memcmp(there, bytes, some) != 0)
 			return 0;
-		bytes += got;
-		count -= (size_t)got;
 	}
 	return 1;
 }
 
 bp_status output_file_write(struct output_file *out, const void *bytes, size_t count, bp_error *error)
 {
-	const uint8_t *next = bytes;
 	if (out->rule == OUTPUT_COMPARE) {
-		const int same = same_bytes(out->fd, next, count);
+		const int same = same_bytes(out->fd, bytes, count);
 		return same < 0 ? refuse(out->target, "read", error) : same ? BP_OK : refuse_taken(out->target, error);
 	}
-	while (count) {
-		const ssize_t written = write(out->fd, next, count);
-		if (written < 0 && errno == EINTR)
-			continue;
-		if (written <= 0) {
-			errno = written < 0 ? errno : ENOSPC;
-			return refuse(out->target, "write", error);
-		}
-		next += written;
-		count -= (size_t)written;
-	}
-	return BP_OK;
+	return descriptor_write(out->fd, bytes, count, -1) == count ? BP_OK : refuse(out->target, "write", error);
 }
 
 /* Mode, owner and group of the file that is replaced; who must not give files away keeps what is allowed. */
@@ -175,20 +157,16 @@ static bp_status file_sync(const struct output_file *out, bp_error *error)
 static bp_status bytes_copy(int from, struct output_file *to, bp_error *error)
 {
 	uint8_t bytes[COMPARE_BYTES];
-	off_t at = 0;
-	for (;;) {
-		const ssize_t got = pread(from, bytes, sizeof bytes, at);
-		if (got < 0 && errno == EINTR)
-			continue;
-		if (got < 0)
+	size_t got = sizeof bytes;
+	for (off_t at = 0; got == sizeof bytes; at += (off_t)got) {
+		got = descriptor_read(from, bytes, sizeof bytes, at);
+		if (got < sizeof bytes && errno)
 			return refuse(to->target, "read back", error);
-		if (got == 0)
-			return BP_OK;
-		bp_status status = output_file_write(to, bytes, (size_t)got, error);
+		const bp_status status = output_file_write(to, bytes, got, error);
 		if (status)
 			return status;
-		at += got;
 	}
+	return BP_OK;
 }
 
 /* Names the unnamed file; where that is not allowed, as in some containers, a copy has a name from the start. */

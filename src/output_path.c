@@ -28,7 +28,7 @@ bp_status output_path_resolve(const char *path, char **out, bool *found, struct 
 {
 	*found = false;
 	if (!*path)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the output path is empty");
+		return error_argument(error, "the output path is empty");
 	*found = lstat(path, about) == 0;
 	if (!*found && errno == ENAMETOOLONG)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "%s: cannot create: %s", path, strerror(errno));

@@ -71,10 +71,7 @@ static void heads_list(const bp_archive *archive, uint64_t first, uint64_t most)
 		struct origin origin;
 		if (archive_entry_origin(archive, &entry, &head, &origin, NULL) != BP_OK)
 			continue;
-		struct json json = json_begin(nowhere, true);
-		json_string(&json, "name", head.name);
-		facts_full(&json, &head, &origin);
-		json_finish(&json);
+		facts_print(nowhere, true, &head, &origin);
 	}
 }
 

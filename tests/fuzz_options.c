@@ -17,7 +17,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
 	double error = 1;
 	bool quiet = false;
 	const struct option_rule rules[] = {
-		{"output", 'o', option_text, .to = &output},         {"jobs", 'j', option_jobs, .to = &jobs},
+		{"output", 'o', option_text, .to = &output},         {"jobs", 'j', option_integer, &jobs, 1, 256},
 		{"budget", 0, option_bytes, &budget, 1000, 4000000}, {"max-error", 0, option_number, &error, 1e-6, 10},
 		{"quiet", 'q', option_flag, .to = &quiet},           {0}};
 	char *text = malloc(count + 1), *words[WORDS_MAX + 2] = {strdup("fuzz")};

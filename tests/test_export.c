@@ -6,8 +6,7 @@
 
 #include <cmocka.h>
 
-#include "tool/export/export_bsdf.h"
-#include "tool/export/export_mbsdf.h"
+#include "tool/export/export.h"
 #include "tool/export/tensor_writer.h"
 #include "tool/export/upsampling.h"
 #include "tool/export/warped.h"

@@ -27,17 +27,16 @@ size_t bp_table_bytes(uint32_t theta_h, uint32_t theta_d, uint32_t phi_d, const 
 static bp_status options_check(const bp_table_options *options, bp_error *error)
 {
 	if (options->struct_bytes != sizeof *options)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_table_options) = %zu",
-		                 options->struct_bytes, sizeof *options);
+		return error_argument(error, "struct_bytes is %zu, not sizeof(bp_table_options) = %zu", options->struct_bytes,
+		                      sizeof *options);
 	if (!number_bytes(options->number))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no kind of number %d", (int)options->number);
+		return error_argument(error, "there is no kind of number %d", (int)options->number);
 	if (options->layout != BP_LAYOUT_PLANES && options->layout != BP_LAYOUT_INTERLEAVED)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no layout %d", (int)options->layout);
+		return error_argument(error, "there is no layout %d", (int)options->layout);
 	if (options->continued != 0 && options->continued != 1)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "continued is %d, it must be 0 or 1", options->continued);
+		return error_argument(error, "continued is %d, it must be 0 or 1", options->continued);
 	if (!(options->max_log_rmse >= 0))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more",
-		                 options->max_log_rmse);
+		return error_argument(error, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
 	return BP_OK;
 }
 
@@ -58,23 +57,20 @@ static void channel_put(const struct expansion *table, int c, const uint8_t *bel
 	}
 }
 
-static bp_status table_put(const struct model *model, const bp_table_options *options, void *values, bp_error *error)
+static bp_status table_put(const struct expansion *table, double horizon_limit, const bp_table_options *options, void *values,
+                           bp_error *error)
 {
-	struct expansion table = {0};
 	uint8_t *below = NULL;
-	bp_status status = model_expand(model, 0, &table, error);
-	if (!status && !options->continued) {
-		below = malloc(lattice_cells(model->dims));
-		if (below)
-			lattice_below_horizon(model->dims, model->horizon_limit, below);
-		else
-			status = error_memory(error, lattice_cells(model->dims));
+	if (!options->continued) {
+		below = malloc(lattice_cells(table->dims));
+		if (!below)
+			return error_memory(error, lattice_cells(table->dims));
+		lattice_below_horizon(table->dims, horizon_limit, below);
 	}
-	for (int c = 0; !status && c < CHANNELS; c++)
-		channel_put(&table, c, below, options, values);
+	for (int c = 0; c < CHANNELS; c++)
+		channel_put(table, c, below, options, values);
 	free(below);
-	expansion_free(&table);
-	return status;
+	return BP_OK;
 }
 
 bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_table_options *options, void *values, size_t bytes,
@@ -83,7 +79,7 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
 	const bp_table_options usual = {.struct_bytes = sizeof usual};
 	struct index_entry entry;
 	struct record_head head;
-	struct model *model = NULL;
+	struct expansion table = {0};
 	fenv_t before;
 
 	options = options ? options : &usual;
@@ -94,14 +90,13 @@ bp_status bp_archive_table(const bp_archive *archive, uint64_t index, const bp_t
 		return status;
 	const size_t wanted = bp_table_bytes(head.dims.theta_h, head.dims.theta_d, head.dims.phi_d, options);
 	if (!values || bytes != wanted)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "%s: a table of %u x %u x %u cells takes %zu bytes, there is room for %zu", head.name, head.dims.theta_h,
-		                 head.dims.theta_d, head.dims.phi_d, wanted, values ? bytes : 0);
+		return error_argument(error, "%s: a table of %u x %u x %u cells takes %zu bytes, there is room for %zu", head.name,
+		                      head.dims.theta_h, head.dims.theta_d, head.dims.phi_d, wanted, values ? bytes : 0);
 	environment_enter(&before);
-	status = archive_entry_load(archive, &entry, &head, record_layers_for(&head, options->max_log_rmse), &model, error);
+	status = archive_entry_expand(archive, &entry, &head, record_layers_for(&head, options->max_log_rmse), &table, error);
 	if (!status)
-		status = table_put(model, options, values, error);
-	model_free(model);
+		status = table_put(&table, head.horizon_limit, options, values, error);
+	expansion_free(&table);
 	environment_leave(&before);
 	return status;
 }

@@ -21,7 +21,7 @@ struct bp_writer {
 bp_status bp_writer_create(bp_writer **out, bp_error *error)
 {
 	if (!out)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a place for the writer is needed");
+		return error_argument(error, "a place for the writer is needed");
 	bp_writer *writer = calloc(1, sizeof *writer);
 	if (!writer)
 		return error_memory(error, sizeof *writer);
@@ -57,13 +57,13 @@ bp_status bp_writer_add(bp_writer *writer, const uint8_t *record, size_t record_
 {
 	struct record_head head;
 	if (!record)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no record");
+		return error_argument(error, "there is no record");
 	bp_status status = record_verify(record, record_bytes, &head, error);
 	if (status)
 		return status;
 	const size_t place = place_find(writer, head.name), name_bytes = strlen(head.name) + 1;
 	if (place < writer->count && !strcmp(writer->list[place].name, head.name))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is a material \"%s\" already", head.name);
+		return error_argument(error, "there is a material \"%s\" already", head.name);
 	struct gathered *list = memory_grown(writer->list, writer->count, sizeof *list);
 	if (list)
 		writer->list = list;
@@ -104,7 +104,7 @@ bp_status bp_writer_save_memory(const bp_writer *writer, uint8_t **bytes, size_t
 {
 	struct archive_writer *to;
 	if (!bytes || !count)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "places for the bytes and their number are needed");
+		return error_argument(error, "places for the bytes and their number are needed");
 	const bp_status status = writer_fill(writer, NULL, &to, error);
 	return status ? status : archive_writer_commit_memory(to, bytes, count, error);
 }

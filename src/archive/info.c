@@ -44,7 +44,7 @@ bp_status bp_archive_info(const bp_archive *archive, uint64_t index, bp_material
 	struct index_entry entry;
 	struct record_head head;
 	if (!info || info->struct_bytes != sizeof *info)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_material_info)");
+		return error_argument(error, "struct_bytes is not set to sizeof(bp_material_info)");
 	const bp_status status = archive_record_head(archive, index, &entry, &head, error);
 	if (!status)
 		info_fill(&head, entry.offset, info);
@@ -57,10 +57,9 @@ static bp_status elements_head(const bp_archive *archive, uint64_t index, size_t
 {
 	struct index_entry entry;
 	if (element_bytes != known)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "element_bytes is %zu, an element has %zu", element_bytes,
-		                 known);
+		return error_argument(error, "element_bytes is %zu, an element has %zu", element_bytes, known);
 	if (capacity && !elements)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no place for %u elements", capacity);
+		return error_argument(error, "there is no place for %u elements", capacity);
 	return archive_record_head(archive, index, &entry, head, error);
 }
 
@@ -99,11 +98,9 @@ bp_status bp_archive_sections(const bp_archive *archive, uint64_t index, size_t 
 
 bp_status bp_archive_record(const bp_archive *archive, uint64_t index, uint8_t **record, size_t *record_bytes, bp_error *error)
 {
-	struct index_page leaf;
 	struct index_entry entry;
 	struct record_head head;
-	leaf.count = 0;
-	bp_status status = archive_entry(archive, index, &leaf, &entry, error);
+	bp_status status = archive_entry(archive, index, NULL, &entry, error);
 	if (!status)
 		status = archive_entry_record(archive, &entry, &head, record, error);
 	if (!status)

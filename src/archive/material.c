@@ -27,19 +27,18 @@ static const bp_allocator *allocator_enter(const bp_allocator *allocator)
 static bp_status options_check(const bp_load_options *options, bp_error *error)
 {
 	if (options->struct_bytes != sizeof *options)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_load_options) = %zu",
-		                 options->struct_bytes, sizeof *options);
+		return error_argument(error, "struct_bytes is %zu, not sizeof(bp_load_options) = %zu", options->struct_bytes,
+		                      sizeof *options);
 	if (!(options->max_log_rmse >= 0))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "max_log_rmse is %g, it must be 0 or more",
-		                 options->max_log_rmse);
+		return error_argument(error, "max_log_rmse is %g, it must be 0 or more", options->max_log_rmse);
 	if (options->form != BP_FORM_EXPANDED && options->form != BP_FORM_COMPACT && options->form != BP_FORM_PREVIEW)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no memory form %d", (int)options->form);
+		return error_argument(error, "there is no memory form %d", (int)options->form);
 	if ((int)options->colour < BP_COLOUR_RGB || (int)options->colour > BP_COLOUR_B)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no colour option %d", (int)options->colour);
+		return error_argument(error, "there is no colour option %d", (int)options->colour);
 	if (options->allocator && (!options->allocator->alloc || !options->allocator->release))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an allocator needs both of its functions");
+		return error_argument(error, "an allocator needs both of its functions");
 	if (options->sampling != 0 && options->sampling != 1)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "sampling is %d, it must be 0 or 1", options->sampling);
+		return error_argument(error, "sampling is %d, it must be 0 or 1", options->sampling);
 	return BP_OK;
 }
 
@@ -188,8 +187,7 @@ void bp_material_free(bp_material *material)
 bp_status bp_material_loaded(const bp_material *material, bp_loaded *loaded, bp_error *error)
 {
 	if (loaded->struct_bytes != sizeof *loaded)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_loaded) = %zu",
-		                 loaded->struct_bytes, sizeof *loaded);
+		return error_argument(error, "struct_bytes is %zu, not sizeof(bp_loaded) = %zu", loaded->struct_bytes, sizeof *loaded);
 	*loaded = material->loaded;
 	return BP_OK;
 }
@@ -255,10 +253,9 @@ void bp_material_pdf_batch(const bp_material *material, size_t count, const floa
 bp_status bp_material_albedo_table(const bp_material *material, size_t count, float *rgb, bp_error *error)
 {
 	if (count < 1 || count > ALBEDO_TABLE_MAX || !rgb)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an albedo table has 1 to %d entries, not %zu", ALBEDO_TABLE_MAX,
-		                 count);
+		return error_argument(error, "an albedo table has 1 to %d entries, not %zu", ALBEDO_TABLE_MAX, count);
 	if (!material->albedo)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the material was loaded without sampling, so it has no albedo");
+		return error_argument(error, "the material was loaded without sampling, so it has no albedo");
 	for (size_t n = 0; n < count; n++)
 		bp_material_albedo(material, (float)acos(((double)n + 0.5) / (double)count), rgb + 3 * n);
 	return BP_OK;

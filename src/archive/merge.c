@@ -92,7 +92,7 @@ bp_status archive_subset(const struct bp_archive *archive, const uint64_t *index
 
 	*totals = (struct copy_totals){0};
 	if (count == 0)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no material to copy");
+		return error_argument(error, "no material to copy");
 	bp_status status = archive_writer_open(options->output, &writer, error);
 	if (status)
 		return status;

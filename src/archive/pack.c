@@ -21,25 +21,21 @@ static bp_status options_read(const bp_pack_options *options, struct fit_options
 	static const bp_pack_options USUAL = {.struct_bytes = sizeof USUAL};
 	options = options ? options : &USUAL;
 	if (options->struct_bytes != sizeof *options)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is %zu, not sizeof(bp_pack_options) = %zu",
-		                 options->struct_bytes, sizeof *options);
+		return error_argument(error, "struct_bytes is %zu, not sizeof(bp_pack_options) = %zu", options->struct_bytes,
+		                      sizeof *options);
 	if (options->profile && options->profile != PROFILE_PAPER && options->profile != PROFILE_SPECTRAL)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no profile %u; 1 is paper, 2 spectral",
-		                 options->profile);
+		return error_argument(error, "there is no profile %u; 1 is paper, 2 spectral", options->profile);
 	if (options->budget_bytes && (options->budget_bytes < RECORD_BUDGET_MIN || options->budget_bytes > RECORD_BUDGET_MAX))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a budget of %u bytes: %d to %d are possible",
-		                 options->budget_bytes, RECORD_BUDGET_MIN, RECORD_BUDGET_MAX);
+		return error_argument(error, "a budget of %u bytes: %d to %d are possible", options->budget_bytes, RECORD_BUDGET_MIN,
+		                      RECORD_BUDGET_MAX);
 	if (options->max_error != 0 && !(options->max_error >= ERROR_LEAST && options->max_error <= ERROR_MOST))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an error bound of %g: %g to %g are possible",
-		                 options->max_error, ERROR_LEAST, ERROR_MOST);
+		return error_argument(error, "an error bound of %g: %g to %g are possible", options->max_error, ERROR_LEAST, ERROR_MOST);
 	if (options->budget_bytes && options->max_error != 0)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a budget and an error bound exclude each other");
+		return error_argument(error, "a budget and an error bound exclude each other");
 	if (options->effort > EFFORT_MOST)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an effort of %u: 1 to %d are possible", options->effort,
-		                 EFFORT_MOST);
+		return error_argument(error, "an effort of %u: 1 to %d are possible", options->effort, EFFORT_MOST);
 	if (options->zeros > BP_ZEROS_MEASURED)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no rule %u for zeros; 0 is auto, 1 holes, 2 measured",
-		                 options->zeros);
+		return error_argument(error, "there is no rule %u for zeros; 0 is auto, 1 holes, 2 measured", options->zeros);
 	*fit = (struct fit_options){
 		.profile = options->profile ? (enum profile)options->profile : PROFILE_SPECTRAL,
 		.budget_bytes = options->max_error > 0  ? RECORD_BUDGET_MAX
@@ -55,17 +51,16 @@ static bp_status options_read(const bp_pack_options *options, struct fit_options
 static bp_status measured_check(const bp_measured *measured, bp_error *error)
 {
 	if (!measured || measured->struct_bytes != sizeof *measured)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "struct_bytes is not set to sizeof(bp_measured)");
+		return error_argument(error, "struct_bytes is not set to sizeof(bp_measured)");
 	if (!measured->values)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there are no values");
+		return error_argument(error, "there are no values");
 	if (measured->number != BP_NUMBER_FLOAT && measured->number != BP_NUMBER_DOUBLE)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "measured values are float or double, not of kind %d",
-		                 (int)measured->number);
+		return error_argument(error, "measured values are float or double, not of kind %d", (int)measured->number);
 	if (measured->layout != BP_LAYOUT_PLANES && measured->layout != BP_LAYOUT_INTERLEAVED)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "there is no layout %d", (int)measured->layout);
+		return error_argument(error, "there is no layout %d", (int)measured->layout);
 	for (int c = 0; c < CHANNELS; c++)
 		if (!(measured->scale[c] >= 0 && measured->scale[c] <= 1e300))
-			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "channel %d has the scale %g", c, measured->scale[c]);
+			return error_argument(error, "channel %d has the scale %g", c, measured->scale[c]);
 	return BP_OK;
 }
 
@@ -142,7 +137,7 @@ bp_status bp_pack(const bp_measured *measured, const char *name, const bp_pack_o
 	fenv_t before;
 
 	if (!name || !record || !record_bytes)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a name, and places for the record and its size are needed");
+		return error_argument(error, "a name, and places for the record and its size are needed");
 	bp_status status = measured_check(measured, error);
 	if (!status)
 		status = options_read(options, &fit, error);
@@ -167,7 +162,6 @@ bp_status bp_record_rename(const uint8_t *record, size_t record_bytes, const cha
                            bp_error *error)
 {
 	if (!record || !name || !out || !out_bytes)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "a record, a name, and places for the copy and its size are needed");
+		return error_argument(error, "a record, a name, and places for the copy and its size are needed");
 	return record_rename(record, record_bytes, name, out, out_bytes, error);
 }

@@ -107,7 +107,7 @@ bp_status bp_archive_open(const char *path, bp_archive **out, bp_error *error)
 	uint64_t file_bytes = 0;
 
 	if (!path || !out)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a path and a place for the handle are needed");
+		return error_argument(error, "a path and a place for the handle are needed");
 	bp_status status = archive_new(path, &archive, error);
 	if (status)
 		return status;
@@ -124,8 +124,7 @@ bp_status bp_archive_open_source(const bp_source *source, bp_archive **out, bp_e
 	struct bp_archive *archive = NULL;
 
 	if (!source || !out || source->struct_bytes != sizeof *source || !source->read)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "a bp_source with struct_bytes and read, and a place for the handle are needed");
+		return error_argument(error, "a bp_source with struct_bytes and read, and a place for the handle are needed");
 	bp_status status = archive_new("", &archive, error);
 	if (status)
 		return status;
@@ -145,7 +144,7 @@ bp_status bp_archive_open_memory(const void *bytes, size_t count, bp_archive **o
 	const bp_source source = {
 		.struct_bytes = sizeof source, .read = memory_read, .user = (void *)(uintptr_t)bytes, .bytes = count};
 	if (!bytes)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the archive's bytes are needed");
+		return error_argument(error, "the archive's bytes are needed");
 	return bp_archive_open_source(&source, out, error);
 }
 
@@ -193,6 +192,11 @@ static bp_status leaf_find(const struct bp_archive *archive, const char *name, u
 bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct index_page *leaf, struct index_entry *entry,
                         bp_error *error)
 {
+	struct index_page own;
+	if (!leaf) {
+		own.count = 0;
+		leaf = &own;
+	}
 	if (index >= archive->header.count)
 		return error_set(error, BP_ERROR_NOT_FOUND, BP_NO_OFFSET, "there is no material %llu; the archive has %llu",
 		                 (unsigned long long)index, (unsigned long long)archive->header.count);
@@ -210,10 +214,8 @@ bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct
 
 bp_status bp_archive_name(const bp_archive *archive, uint64_t index, char name[BP_NAME_BYTES_MAX + 1], bp_error *error)
 {
-	struct index_page leaf;
 	struct index_entry entry;
-	leaf.count = 0;
-	bp_status status = archive_entry(archive, index, &leaf, &entry, error);
+	const bp_status status = archive_entry(archive, index, NULL, &entry, error);
 	if (!status)
 		memcpy(name, entry.name, entry.name_bytes + 1);
 	return status;
@@ -224,7 +226,7 @@ bp_status bp_archive_find(const bp_archive *archive, const char *name, uint64_t 
 	struct index_page leaf;
 	uint32_t i, bytes;
 	if (!name || !index)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a name and a place for its number are needed");
+		return error_argument(error, "a name and a place for its number are needed");
 	bp_status status = leaf_find(archive, name, 0, &leaf, error);
 	if (status)
 		return status;
@@ -297,9 +299,7 @@ bp_status archive_entry_record(const struct bp_archive *archive, const struct in
 bp_status archive_record_head(const struct bp_archive *archive, uint64_t index, struct index_entry *entry,
                               struct record_head *head, bp_error *error)
 {
-	struct index_page leaf;
-	leaf.count = 0;
-	const bp_status status = archive_entry(archive, index, &leaf, entry, error);
+	const bp_status status = archive_entry(archive, index, NULL, entry, error);
 	return status ? status : archive_entry_head(archive, entry, head, error);
 }
 
@@ -320,6 +320,17 @@ bp_status archive_entry_load(const struct bp_archive *archive, const struct inde
 {
 	struct fetch_place place = {.archive = archive, .offset = entry->offset};
 	return error_shift(record_decode(head, layers, record_fetch, &place, out, error), entry->offset, error);
+}
+
+bp_status archive_entry_expand(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                               uint32_t layers, struct expansion *table, bp_error *error)
+{
+	struct model *model = NULL;
+	bp_status status = archive_entry_load(archive, entry, head, layers, &model, error);
+	if (!status)
+		status = model_expand(model, 0, table, error);
+	model_free(model);
+	return status;
 }
 
 bp_status archive_model_load(const struct bp_archive *archive, uint64_t index, uint32_t layers, struct model **out,

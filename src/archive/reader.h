@@ -22,7 +22,7 @@ bp_status archive_page_read(const struct bp_archive *archive, const struct page_
 
 /*
  * Entry `index` (0..count-1, in name order). *leaf is the caller's memory of the last leaf page: zero it
- * before the first call, and a walk over all materials reads every page once.
+ * before the first call, and a walk over all materials reads every page once. NULL: for one call.
  */
 bp_status archive_entry(const struct bp_archive *archive, uint64_t index, struct index_page *leaf, struct index_entry *entry,
                         bp_error *error);
@@ -53,5 +53,9 @@ bp_status archive_model_load(const struct bp_archive *archive, uint64_t index, u
 /* The same when entry and head are known already. */
 bp_status archive_entry_load(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                              uint32_t layers, struct model **out, bp_error *error);
+
+/* That model's table: *table as model_expand has it, the caller's to free also after an error. */
+bp_status archive_entry_expand(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
+                               uint32_t layers, struct expansion *table, bp_error *error);
 
 #endif

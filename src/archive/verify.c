@@ -59,12 +59,8 @@ static void problem_tell(struct walk *walk, const char *material, uint64_t offse
 static bp_status layer_check(const struct bp_archive *archive, const struct index_entry *entry, const struct record_head *head,
                              uint32_t layers, struct expansion *table, bp_error *error)
 {
-	struct model *model = NULL;
-	size_t cells = lattice_cells(head->dims);
-	bp_status status = archive_entry_load(archive, entry, head, layers, &model, error);
-	if (!status)
-		status = model_expand(model, 0, table, error);
-	model_free(model);
+	const size_t cells = lattice_cells(head->dims);
+	const bp_status status = archive_entry_expand(archive, entry, head, layers, table, error);
 	if (status)
 		return status;
 	if (!(table->unit > 0 && isfinite(table->unit)))
@@ -180,7 +176,7 @@ bp_status bp_archive_verify(const bp_archive *archive, unsigned flags, bp_proble
 	bp_error problem;
 
 	if (!archive || flags & ~BP_VERIFY_DEEP)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no archive, or unknown flags");
+		return error_argument(error, "no archive, or unknown flags");
 	const struct archive_header *header = archive_header(archive);
 	walk.next_offset = ARCHIVE_HEADER_BYTES;
 	if (archive_read(archive, 0, bytes, sizeof bytes, &problem) != BP_OK ||

@@ -73,11 +73,9 @@ bp_status archive_writer_add(struct archive_writer *writer, const uint8_t *recor
 	if (status)
 		return status;
 	if (head.record_bytes != record_bytes)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: a record of %u bytes was given as %zu", head.name,
-		                 head.record_bytes, record_bytes);
+		return error_argument(error, "%s: a record of %u bytes was given as %zu", head.name, head.record_bytes, record_bytes);
 	if (writer->last_name[0] && name_compare(writer->last_name, strlen(writer->last_name), head.name, strlen(head.name)) >= 0)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%s: comes after %s, names must ascend", head.name,
-		                 writer->last_name);
+		return error_argument(error, "%s: comes after %s, names must ascend", head.name, writer->last_name);
 	memcpy(writer->last_name, head.name, sizeof head.name);
 	index_add(&writer->index, head.name, writer->file_bytes, head.record_bytes, head.head_bytes);
 	return writer_append(writer, record, record_bytes, error);

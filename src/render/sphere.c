@@ -110,8 +110,7 @@ static bp_status size_check(uint32_t size, bool rows_inside, bp_error *error)
 {
 	if (size >= 1 && size <= SPHERE_SIZE_MAX && rows_inside)
 		return BP_OK;
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "an image of %u pixels: the size must be 1 to %d", size,
-	                 SPHERE_SIZE_MAX);
+	return error_argument(error, "an image of %u pixels: the size must be 1 to %d", size, SPHERE_SIZE_MAX);
 }
 
 bp_status sphere_plan_make(enum lighting lighting, uint32_t size, uint32_t row_first, uint32_t row_count,

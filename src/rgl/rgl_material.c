@@ -13,10 +13,9 @@
 enum { ANGLES_MAX = 256, SIDE_MAX = 2048, WAVELENGTHS_MAX = 4096, WAVELENGTHS_MIN = 3 };
 #define ANGLE_MOST 1.6 /* radians: the files' last angle is a quarter turn, more or less rounded */
 
-static bp_status refuse(const struct tensor_field *field, const char *what, bp_error *error)
-{
-	return error_set(error, BP_ERROR_BAD_INPUT, field->offset, "field %s: %s", field->name, what);
-}
+/* What is wrong with a field, at the place of its array. */
+#define refuse(error, field, format, ...) \
+	error_set(error, BP_ERROR_BAD_INPUT, (field)->offset, "field %s: " format, (field)->name, __VA_ARGS__)
 
 static bp_status field_get(const struct tensor_table *table, const char *name, const struct tensor_field **out, bp_error *error)
 {
@@ -34,11 +33,9 @@ static bp_status floats_get(const struct tensor_table *table, const char *name, 
 	if (status)
 		return status;
 	if ((*out)->type < TENSOR_F16)
-		return error_set(error, BP_ERROR_BAD_INPUT, (*out)->offset, "field %s: type %s, where floats are expected", name,
-		                 tensor_type_name((*out)->type));
+		return refuse(error, *out, "type %s, where floats are expected", tensor_type_name((*out)->type));
 	if ((*out)->rank != rank)
-		return error_set(error, BP_ERROR_BAD_INPUT, (*out)->offset, "field %s: rank %" PRIu32 ", expected %" PRIu32, name,
-		                 (*out)->rank, rank);
+		return refuse(error, *out, "rank %" PRIu32 ", expected %" PRIu32, (*out)->rank, rank);
 	return BP_OK;
 }
 
@@ -46,9 +43,8 @@ static bp_status sides_check(const struct tensor_field *field, bp_error *error)
 {
 	for (uint32_t n = field->rank - 2; n < field->rank; n++)
 		if (field->shape[n] < 2 || field->shape[n] > SIDE_MAX)
-			return error_set(error, BP_ERROR_BAD_INPUT, field->offset,
-			                 "field %s: dimension %" PRIu32 " is %" PRIu64 "; 2 to %d are possible", field->name, n,
-			                 field->shape[n], SIDE_MAX);
+			return refuse(error, field, "dimension %" PRIu32 " is %" PRIu64 "; 2 to %d are possible", n, field->shape[n],
+			              SIDE_MAX);
 	return BP_OK;
 }
 
@@ -56,10 +52,9 @@ static bp_status sides_check(const struct tensor_field *field, bp_error *error)
 static bp_status angles_check(const struct tensor_field *field, uint64_t azimuths, uint64_t angles, bp_error *error)
 {
 	if (field->shape[0] != azimuths || field->shape[1] != angles)
-		return error_set(error, BP_ERROR_BAD_INPUT, field->offset,
-		                 "field %s: %" PRIu64 " x %" PRIu64 " directions of incidence, phi_i and theta_i have %" PRIu64
-		                 " x %" PRIu64,
-		                 field->name, field->shape[0], field->shape[1], azimuths, angles);
+		return refuse(error, field,
+		              "%" PRIu64 " x %" PRIu64 " directions of incidence, phi_i and theta_i have %" PRIu64 " x %" PRIu64,
+		              field->shape[0], field->shape[1], azimuths, angles);
 	return sides_check(field, error);
 }
 
@@ -85,15 +80,12 @@ static bp_status samples_check(const struct tensor_table *table, uint64_t azimut
 		return status;
 	const uint64_t channels = spectral ? field->shape[0] : 3;
 	if (spectral && (channels < WAVELENGTHS_MIN || channels > WAVELENGTHS_MAX))
-		return error_set(error, BP_ERROR_BAD_INPUT, field->offset,
-		                 "field wavelengths: %" PRIu64 " of them; %d to %d are possible", channels, WAVELENGTHS_MIN,
-		                 WAVELENGTHS_MAX);
+		return refuse(error, field, "%" PRIu64 " of them; %d to %d are possible", channels, WAVELENGTHS_MIN, WAVELENGTHS_MAX);
 	if (samples->shape[2] != channels)
-		return error_set(error, BP_ERROR_BAD_INPUT, samples->offset, "field %s: %" PRIu64 " channels, expected %" PRIu64,
-		                 samples->name, samples->shape[2], channels);
+		return refuse(error, samples, "%" PRIu64 " channels, expected %" PRIu64, samples->shape[2], channels);
 	field = tensor_field_find(table, "luminance");
 	const uint64_t shape[4] = {azimuths, angles, samples->shape[3], samples->shape[4]};
-	return field && !tensor_field_has_shape(field, 4, shape) ? refuse(field, "its shape is not that of the samples", error)
+	return field && !tensor_field_has_shape(field, 4, shape) ? refuse(error, field, "%s", "its shape is not that of the samples")
 	                                                         : BP_OK;
 }
 
@@ -105,9 +97,8 @@ static bp_status valid_check(const struct tensor_table *table, bp_error *error)
 		return BP_OK;
 	const uint64_t count = samples->count / samples->shape[2];
 	if (valid->type != TENSOR_U8 || valid->count != (count + 7) / 8)
-		return error_set(error, BP_ERROR_BAD_INPUT, valid->offset,
-		                 "field valid: %" PRIu64 " elements of type %s, expected %" PRIu64 " of uint8, a bit for each sample",
-		                 valid->count, tensor_type_name(valid->type), (count + 7) / 8);
+		return refuse(error, valid, "%" PRIu64 " elements of type %s, expected %" PRIu64 " of uint8, a bit for each sample",
+		              valid->count, tensor_type_name(valid->type), (count + 7) / 8);
 	return BP_OK;
 }
 
@@ -125,8 +116,7 @@ bp_status rgl_table_check(const struct tensor_table *table, bp_error *error)
 		                 phi->shape[0]);
 	status = floats_get(table, "theta_i", 1, &theta, error);
 	if (!status && theta->shape[0] > ANGLES_MAX)
-		status = error_set(error, BP_ERROR_BAD_INPUT, theta->offset, "field theta_i: %" PRIu64 " angles; at most %d are possible",
-		                   theta->shape[0], ANGLES_MAX);
+		status = refuse(error, theta, "%" PRIu64 " angles; at most %d are possible", theta->shape[0], ANGLES_MAX);
 	static const char *const GRIDS[] = {"ndf", "sigma"};
 	for (int n = 0; n < 2 && !status; n++)
 		if (!(status = floats_get(table, GRIDS[n], 2, &field, error)))
@@ -142,14 +132,14 @@ bp_status rgl_table_check(const struct tensor_table *table, bp_error *error)
 	if (!status)
 		status = field_get(table, "jacobian", &field, error);
 	if (!status && (field->type != TENSOR_U8 || field->count != 1))
-		status = refuse(field, "one uint8 is expected", error);
+		status = refuse(error, field, "%s", "one uint8 is expected");
 	return status;
 }
 
-static bp_status not_finite(const struct tensor_field *field, uint64_t element, bp_error *error)
+static bp_status not_finite(const struct tensor_field *field, uint64_t element, const char *negative, bp_error *error)
 {
 	return error_set(error, BP_ERROR_BAD_INPUT, field->offset + element * tensor_type_bytes(field->type),
-	                 "field %s: element %" PRIu64 " is negative, NaN or infinite", field->name, element);
+	                 "field %s: element %" PRIu64 " is %sNaN or infinite", field->name, element, negative);
 }
 
 /* Ascending numbers from `least` to `most`; *values is malloc'ed. */
@@ -184,12 +174,12 @@ static bp_status grid_read(const uint8_t *file, const struct tensor_field *field
 		tensor_floats(file, field, y * grid->width, grid->width, row);
 		for (size_t x = 0; x < grid->width; x++) {
 			if (!(row[x] >= 0 && row[x] <= FLT_MAX))
-				return not_finite(field, y * grid->width + x, error);
+				return not_finite(field, y * grid->width + x, "negative, ", error);
 			largest = fmax(largest, row[x]);
 			grid->values[y * grid->width + x] = (float)row[x];
 		}
 	}
-	return largest > 0 ? BP_OK : refuse(field, "0 everywhere", error);
+	return largest > 0 ? BP_OK : refuse(error, field, "%s", "0 everywhere");
 }
 
 static bp_status vndf_read(const uint8_t *file, const struct tensor_field *field, struct warp *warp, bp_error *error)
@@ -204,10 +194,9 @@ static bp_status vndf_read(const uint8_t *file, const struct tensor_field *field
 		tensor_floats(file, field, slice * nodes, nodes, values);
 		const int fault = warp_fill(warp, slice, values, &at);
 		if (fault == -1)
-			status = not_finite(field, slice * nodes + at, error);
+			status = not_finite(field, slice * nodes + at, "negative, ", error);
 		else if (fault)
-			status = error_set(error, BP_ERROR_BAD_INPUT, field->offset, "field %s: the density at theta_i number %zu is %s",
-			                   field->name, slice, "0 everywhere, or beyond all bounds");
+			status = refuse(error, field, "the density at theta_i number %zu is 0 everywhere, or beyond all bounds", slice);
 	}
 	if (!status)
 		warp_round(warp);
@@ -223,9 +212,7 @@ static bp_status plane_add(const uint8_t *file, const struct tensor_field *field
 		tensor_floats(file, field, first + y * material->width, material->width, row);
 		for (size_t x = 0; x < material->width; x++) {
 			if (!(fabs(row[x]) <= FLT_MAX))
-				return error_set(
-					error, BP_ERROR_BAD_INPUT, field->offset + (first + y * material->width + x) * tensor_type_bytes(field->type),
-					"field %s: element %" PRIu64 " is NaN or infinite", field->name, first + y * material->width + x);
+				return not_finite(field, first + y * material->width + x, "", error);
 			for (int c = 0; c < 3; c++)
 				sums[3 * (y * material->width + x) + (size_t)c] += weights[c] * row[x];
 		}

@@ -127,8 +127,10 @@ static void origin_members(struct json *json, const struct origin *origin)
 	json_close(json);
 }
 
-void facts_full(struct json *json, const struct record_head *head, const struct origin *origin)
+void facts_print(FILE *out, bool indent, const struct record_head *head, const struct origin *origin)
 {
+	struct json begun = json_begin(out, indent), *json = &begun;
+	json_string(json, "name", head->name);
 	json_integer(json, "bytes", head->record_bytes);
 	json_string(json, "profile", profile_name(head->profile));
 	json_integer(json, "codec_version", head->codec_version);
@@ -157,4 +159,5 @@ void facts_full(struct json *json, const struct record_head *head, const struct 
 
 	facts_brief(json, head);
 	layers_member(json, head);
+	json_finish(json);
 }

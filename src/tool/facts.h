@@ -25,7 +25,7 @@ void facts_brief(struct json *json, const struct record_head *head);
 /* What kind of file a source was, for people: "RGL tensor file, red, green and blue". NULL for a MERL table. */
 const char *origin_text(enum origin_kind kind);
 
-/* Everything: also source, lattice, options, layers and sections. */
-void facts_full(struct json *json, const struct record_head *head, const struct origin *origin);
+/* Everything, as an object of its own: also name, source, lattice, options, layers and sections. */
+void facts_print(FILE *out, bool indent, const struct record_head *head, const struct origin *origin);
 
 #endif

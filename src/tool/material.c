@@ -9,15 +9,6 @@
 #include "report.h"
 #include "selection.h"
 
-bp_status material_decode(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
-                          struct model **model, struct expansion *table, bp_error *error)
-{
-	bp_status status = archive_entry_head(archive, entry, head, error);
-	if (!status)
-		status = archive_entry_load(archive, entry, head, 0, model, error);
-	return status ? status : model_expand(*model, 0, table, error);
-}
-
 static int archived_load(struct material *material, char *name)
 {
 	struct selection selection;
@@ -30,7 +21,8 @@ static int archived_load(struct material *material, char *name)
 	if (selection.incomplete)
 		code = EXIT_FAILED; /* reported */
 	else if (selection_entry(&selection, 0, &entry, &error) ||
-	         material_decode(selection.archive, &entry, &material->head, &material->model, &material->table, &error))
+	         archive_entry_head(selection.archive, &entry, &material->head, &error) ||
+	         archive_entry_expand(selection.archive, &entry, &material->head, 0, &material->table, &error))
 		code = report_error(material->path, name, &error);
 	else
 		memcpy(material->name, material->head.name, sizeof material->name);
@@ -84,7 +76,6 @@ int material_load(const struct command *command, char **operands, int operand_co
 void material_free(struct material *material)
 {
 	lattice_free(&material->lattice);
-	model_free(material->model);
 	expansion_free(&material->table);
 	*material = (struct material){0};
 }

@@ -11,19 +11,11 @@
 struct material {
 	const char *path;
 	char name[RECORD_NAME_BYTES_MAX + 1];
-	bool measured; /* from a MERL file: lattice is there; otherwise head, model and table are */
+	bool measured; /* from a MERL file: lattice is there; otherwise head and table are */
 	struct lattice lattice;
 	struct record_head head;
-	struct model *model;    /* all layers */
-	struct expansion table; /* of the model */
+	struct expansion table; /* of all layers */
 };
-
-/*
- * A record's head, its model of all layers, and that one's table: *model and *table are the caller's to free, also after an
- * error.
- */
-bp_status material_decode(const struct bp_archive *archive, const struct index_entry *entry, struct record_head *head,
-                          struct model **model, struct expansion *table, bp_error *error);
 
 /*
  * Opens operands[0]. An archive needs the name of a material in operands[1]; for a MERL file (of any legal

@@ -4,7 +4,6 @@
 #include "merl/spelling.h"
 #include "report.h"
 #include "usage.h"
-#include "workers.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -102,6 +101,11 @@ int options_read(const struct command *command, int argc, char **argv, const str
 		if (!rule->take(command, rule, optarg))
 			return EXIT_USAGE;
 	}
+	for (const struct option_rule *rule = rules; option == ENDED && rule->name; rule++)
+		if (rule->take == option_output && !(*(const char **)rule->to && **(const char **)rule->to)) {
+			const char *const example = strstr(command->usage, "-o ") + 3;
+			return report_usage(command, "no output file; give one with -o %.*s", (int)strcspn(example, " "), example);
+		}
 	return option == ENDED ? OPTIONS_END : option == HELPED ? EXIT_OK : EXIT_USAGE;
 }
 
@@ -117,6 +121,11 @@ bool option_text(const struct command *command, const struct option_rule *rule, 
 	(void)command;
 	*(const char **)rule->to = text;
 	return true;
+}
+
+bool option_output(const struct command *command, const struct option_rule *rule, const char *text)
+{
+	return option_text(command, rule, text);
 }
 
 static bool range_refuse(const struct command *command, const struct option_rule *rule, const char *text)
@@ -181,12 +190,6 @@ bool option_number(const struct command *command, const struct option_rule *rule
 	return true;
 }
 
-bool option_jobs(const struct command *command, const struct option_rule *rule, const char *text)
-{
-	const struct option_rule whole = {rule->name, rule->letter, option_integer, rule->to, 1, WORKERS_MAX};
-	return option_integer(command, &whole, text);
-}
-
 bool option_light(const struct command *command, const struct option_rule *rule, const char *text)
 {
 	if (lighting_find(text, rule->to))
@@ -200,14 +203,6 @@ bool option_profile(const struct command *command, const struct option_rule *rul
 	if (profile_parse(text, rule->to))
 		return true;
 	report_usage(command, "--profile: '%s' is neither spectral nor paper", text);
-	return false;
-}
-
-bool option_output(const struct command *command, const char *output, const char *example)
-{
-	if (output && *output)
-		return true;
-	report_usage(command, "no output file; give one with -o %s", example);
 	return false;
 }
 

@@ -34,10 +34,10 @@ struct option_rule {
 
 option_take_fn option_flag;    /* bool: true; the only one that has no value */
 option_take_fn option_text;    /* const char *: within argv */
+option_take_fn option_output;  /* the same of -o, which the command cannot do without; its usage has an example */
 option_take_fn option_integer; /* uint32_t; the whole text must be a number in [least, most], from 0 to 2^32 - 1 */
 option_take_fn option_bytes;   /* int64_t; may end in k, M (1000) or Ki, Mi (1024), with or without a B */
 option_take_fn option_number;  /* double */
-option_take_fn option_jobs;    /* uint32_t, 1 to WORKERS_MAX */
 option_take_fn option_light;   /* enum lighting */
 option_take_fn option_profile; /* enum profile */
 
@@ -47,9 +47,6 @@ option_take_fn option_profile; /* enum profile */
  */
 enum { OPTIONS_END = -1 };
 int options_read(const struct command *command, int argc, char **argv, const struct option_rule *rules);
-
-/* Whether -o named a file; otherwise a usage message with `example` and false. */
-bool option_output(const struct command *command, const char *output, const char *example);
 
 /*
  * Checks what -o names, a picture: it ends in .png or in `other`, and *is_other tells which; otherwise a usage message and

@@ -18,9 +18,8 @@ bp_status output_check_input(const char *path, const char *input, bp_error *erro
 	struct stat output, source;
 	if (stat(path, &output) != 0 || stat(input, &source) != 0 || output.st_dev != source.st_dev || output.st_ino != source.st_ino)
 		return BP_OK;
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-	                 "%s: is one of the inputs%s%s%s; give another output, or --force to replace it", path,
-	                 strcmp(path, input) ? " (" : "", strcmp(path, input) ? input : "", strcmp(path, input) ? ")" : "");
+	return error_argument(error, "%s: is one of the inputs%s%s%s; give another output, or --force to replace it", path,
+	                      strcmp(path, input) ? " (" : "", strcmp(path, input) ? input : "", strcmp(path, input) ? ")" : "");
 }
 
 /* Whether the file that is there is of our making. */
@@ -55,8 +54,8 @@ bp_status output_check_path(const char *path, enum output_kind kind, bool force,
 		return status;
 	output_file_discard(&file);
 	if (!force && stat(path, &about) == 0 && !is_ours(path, kind))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "%s: is there already, and is no %s; give another output, or --force to replace it", path, MADE[kind]);
+		return error_argument(error, "%s: is there already, and is no %s; give another output, or --force to replace it", path,
+		                      MADE[kind]);
 	return BP_OK;
 }
 

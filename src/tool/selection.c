@@ -148,14 +148,12 @@ bool selection_head(struct selection *selection, uint64_t n, struct index_entry 
 	return false;
 }
 
-bool selection_dims(struct selection *selection, struct lattice_dims *dims)
+bp_status selection_plans_make(struct selection *selection, struct comparison_plans *plans, bp_error *error)
 {
 	struct index_entry entry;
 	struct record_head head;
 	for (uint64_t n = 0; n < selection->count && selection_entry(selection, n, &entry, NULL) == BP_OK; n++)
-		if (archive_entry_head(selection->archive, &entry, &head, NULL) == BP_OK) {
-			*dims = head.dims;
-			return true;
-		}
-	return false;
+		if (archive_entry_head(selection->archive, &entry, &head, NULL) == BP_OK)
+			return comparison_plans_make(plans, head.dims, error);
+	return BP_OK;
 }

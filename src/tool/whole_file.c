@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "descriptor.h"
 #include "error.h"
 
 bp_status whole_file_read(const char *path, size_t most, char **out, size_t *out_bytes, bp_error *error)
@@ -25,12 +26,8 @@ bp_status whole_file_read(const char *path, size_t most, char **out, size_t *out
 		status = error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "more than %zu bytes", most);
 	else if (!(text = malloc((size_t)facts.st_size + 1)))
 		status = error_memory(error, (size_t)facts.st_size);
-	ssize_t got;
-	while (status == BP_OK && (got = read(fd, text + used, (size_t)facts.st_size - used)) != 0)
-		if (got > 0)
-			used += (size_t)got;
-		else
-			status = error_set(error, BP_ERROR_IO, used, "cannot read: %s", strerror(errno));
+	else if ((used = descriptor_read(fd, text, (size_t)facts.st_size, -1)) < (size_t)facts.st_size && errno)
+		status = error_set(error, BP_ERROR_IO, used, "cannot read: %s", strerror(errno));
 	close(fd);
 	if (status != BP_OK) {
 		free(text);

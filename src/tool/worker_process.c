@@ -30,6 +30,7 @@
  */
 #include "worker_process.h"
 
+#include "descriptor.h"
 #include "progress.h"
 
 #include <errno.h>
@@ -76,40 +77,15 @@ static void keep_memory(void)
 #endif
 }
 
-static bool read_whole(int fd, void *bytes, size_t count)
-{
-	for (size_t done = 0; done < count;) {
-		ssize_t got = read(fd, (uint8_t *)bytes + done, count - done);
-		if (got < 0 && errno == EINTR)
-			continue;
-		if (got <= 0)
-			return false;
-		done += (size_t)got;
-	}
-	return true;
-}
-
-static bool write_whole(int fd, const void *bytes, size_t count)
-{
-	for (size_t done = 0; done < count;) {
-		ssize_t put = write(fd, (const uint8_t *)bytes + done, count - done);
-		if (put < 0 && errno == EINTR)
-			continue;
-		if (put < 0)
-			return false;
-		done += (size_t)put;
-	}
-	return true;
-}
-
 /* Answers jobs until the parent closes the pipe. Never returns, and never runs the parent's exit handlers. */
 static _Noreturn void worker_main(const struct worker_setup *setup, int job_fd, int result_fd)
 {
 	struct job_frame in;
 	char name[WORKER_NAME_BYTES_MAX + 1];
 
-	while (read_whole(job_fd, &in, sizeof in)) {
-		if (in.magic != JOB_MAGIC || in.name_bytes > sizeof name || !read_whole(job_fd, name, in.name_bytes))
+	while (descriptor_read(job_fd, &in, sizeof in, -1) == sizeof in) {
+		if (in.magic != JOB_MAGIC || in.name_bytes > sizeof name ||
+		    descriptor_read(job_fd, name, in.name_bytes, -1) < in.name_bytes)
 			_exit(1);
 		struct job job = {in.number, name, in.slot, in.slot_bytes, in.attempt};
 		bp_error error = {.status = BP_OK, .offset = BP_NO_OFFSET};
@@ -129,8 +105,9 @@ static _Noreturn void worker_main(const struct worker_setup *setup, int job_fd, 
 		                           .message_bytes = status ? (uint32_t)strlen(error.message) : 0,
 		                           .record_bytes = status ? 0 : (uint32_t)record_bytes};
 		memcpy(out.stage_seconds, clock.seconds, sizeof out.stage_seconds);
-		if (!write_whole(result_fd, &out, sizeof out) || !write_whole(result_fd, error.message, out.message_bytes) ||
-		    (out.record_bytes && !write_whole(result_fd, record, out.record_bytes)))
+		if (descriptor_write(result_fd, &out, sizeof out, -1) < sizeof out ||
+		    descriptor_write(result_fd, error.message, out.message_bytes, -1) < out.message_bytes ||
+		    descriptor_write(result_fd, record, out.record_bytes, -1) < out.record_bytes)
 			_exit(1);
 		free(record);
 	}
@@ -215,7 +192,7 @@ void worker_send(struct worker *worker, struct kept_job *kept)
 	memcpy(message.name, kept->name, name_bytes);
 	worker->current = kept;
 	/* A worker that has died is noticed by its result pipe; one that lives must not wait for what never comes. */
-	if (!write_whole(worker->job_fd, &message, sizeof message.frame + name_bytes))
+	if (descriptor_write(worker->job_fd, &message, sizeof message.frame + name_bytes, -1) < sizeof message.frame + name_bytes)
 		kill(worker->pid, SIGKILL);
 }
 

@@ -183,23 +183,22 @@ void viewer_material_evaluate(const struct viewer_material *material, uint32_t c
 
 double *viewer_table(const struct bp_archive *archive, double index, uint32_t layers, uint32_t dims[3])
 {
-	struct model *model;
+	struct index_entry entry;
+	struct record_head head;
 	struct expansion table = {0};
 	double *values = NULL;
-	if (archive_model_load(archive, (uint64_t)index, layers, &model, &last) != BP_OK)
-		return NULL;
-	if (model_expand(model, 0, &table, &last) == BP_OK) {
-		const size_t cells = lattice_cells(model->dims);
+	if (archive_record_head(archive, (uint64_t)index, &entry, &head, &last) == BP_OK &&
+	    archive_entry_expand(archive, &entry, &head, layers, &table, &last) == BP_OK) {
+		const size_t cells = lattice_cells(head.dims);
 		values = malloc(3 * cells * sizeof *values);
 		if (!values)
 			error_memory(&last, 3 * cells * sizeof *values);
 		for (size_t n = 0; values && n < 3 * cells; n++)
 			values[n] = table.unit * (double)table.rgb[n / cells][n % cells];
-		dims[0] = model->dims.theta_h;
-		dims[1] = model->dims.theta_d;
-		dims[2] = model->dims.phi_d;
+		dims[0] = head.dims.theta_h;
+		dims[1] = head.dims.theta_d;
+		dims[2] = head.dims.phi_d;
 	}
-	model_free(model);
 	expansion_free(&table);
 	return values;
 }

@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 import builtins
+import contextlib
 import os
 import threading
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from ._error import Error, NoPickle, NotFound, check
+from ._error import Error, NoPickle, NotFound, check, run, taken
 from ._material import Material, table_read
 from ._native import ffi, lib
 from ._text import name_bytes, path_bytes
@@ -88,9 +89,9 @@ class Info(NamedTuple):
     zeros: str
 
 
-def elements(call, handle, index: int, kind: str, most: int, error, *where: str) -> list:
+def elements(call, handle, index: int, kind: str, most: int, where: tuple[str, ...]) -> list:
     array, count = ffi.new(f"{kind}[]", most), ffi.new("uint32_t *")
-    check(call(handle, index, ffi.sizeof(kind), array, most, count, error), error, *where)
+    run(call, handle, index, ffi.sizeof(kind), array, most, count, where=where)
     return [array[n] for n in range(count[0])]
 
 
@@ -109,12 +110,11 @@ class Entry(NoPickle):
     @property
     def info(self) -> Info:
         """What is known of it without loading it."""
-        error = ffi.new("bp_error *")
         info = ffi.new("bp_material_info *", {"struct_bytes": ffi.sizeof("bp_material_info")})
         with self._archive._open() as handle:
-            check(lib.bp_archive_info(handle, self._index, info, error), error, *self._where)
-            layers = elements(lib.bp_archive_layers, handle, self._index, "bp_layer", lib.BP_LAYERS_MAX, error, *self._where)
-            sections = elements(lib.bp_archive_sections, handle, self._index, "bp_section", lib.BP_SECTIONS_MAX, error, *self._where)
+            run(lib.bp_archive_info, handle, self._index, info, where=self._where)
+            layers = elements(lib.bp_archive_layers, handle, self._index, "bp_layer", lib.BP_LAYERS_MAX, self._where)
+            sections = elements(lib.bp_archive_sections, handle, self._index, "bp_section", lib.BP_SECTIONS_MAX, self._where)
         return Info(
             name=self.name, profile=PROFILES.get(info.profile, str(info.profile)), codec_version=info.codec_version,
             shape=(info.theta_h, info.theta_d, info.phi_d), head_bytes=info.head_bytes, record_bytes=info.record_bytes,
@@ -129,32 +129,27 @@ class Entry(NoPickle):
 
     def record(self) -> bytes:
         """Its record, byte for byte: what Writer.add takes."""
-        error, record, count = ffi.new("bp_error *"), ffi.new("uint8_t **"), ffi.new("size_t *")
         with self._archive._open() as handle:
-            check(lib.bp_archive_record(handle, self._index, record, count, error), error, *self._where)
-        try:
-            return ffi.buffer(record[0], count[0])[:]
-        finally:
-            lib.bp_free(record[0])
+            return taken(lib.bp_archive_record, handle, self._index, where=self._where)
 
     def load(self, max_error: float = 0.0, form: str = "expanded", colour: str = "rgb", sampling: bool = False) -> Material:
         """As Archive.load."""
         for value, known in ((form, FORMS), (colour, COLOURS)):
             if value not in tuple(known):
                 raise ValueError(f"{value!r} is none of {', '.join(known)}")
-        error, material = ffi.new("bp_error *"), ffi.new("bp_material **")
+        material = ffi.new("bp_material **")
         options = ffi.new("bp_load_options *", {"struct_bytes": ffi.sizeof("bp_load_options"), "max_log_rmse": max_error, "form": FORMS[form],
                                                 "colour": COLOURS[colour], "sampling": int(bool(sampling))})
         record, shape = self.record(), self.info.shape
         with self._archive._open() as handle:
-            check(lib.bp_material_load(handle, self._index, options, material, error), error, *self._where)
+            run(lib.bp_material_load, handle, self._index, options, material, where=self._where)
         return Material(material[0], self.name, record, max_error, shape)
 
     def table(self, max_error: float = 0.0, dtype="float32", continued: bool = False):
         """The decoded table without loading the material: (H, D, P, 3), 1/sr; max_error as in Archive.load, the rest as in Material.table."""
         shape = self.info.shape
         with self._archive._open() as handle:
-            return table_read(handle, self._index, shape, max_error, dtype, continued, *self._where)
+            return table_read(handle, self._index, shape, max_error, dtype, continued, self._where)
 
 
 class Archive(Mapping, NoPickle):
@@ -170,8 +165,19 @@ class Archive(Mapping, NoPickle):
     def __repr__(self) -> str:
         return f"<brdfpack.Archive {self.path!r}{', closed' if self._closed else f': {len(self)} materials'}>"
 
-    def _open(self) -> "Use":
-        return Use(self)
+    @contextlib.contextmanager
+    def _open(self):
+        """The handle for the time of one call, during which another thread's close waits."""
+        with self._lock:
+            if self._closed:
+                raise ValueError(f"the archive {self.path} is closed")
+            self._uses += 1
+        try:
+            yield self._handle
+        finally:
+            with self._lock:
+                self._uses -= 1
+            self._drop()
 
     def _drop(self) -> None:
         with self._lock:
@@ -201,20 +207,20 @@ class Archive(Mapping, NoPickle):
             return lib.bp_archive_count(handle)
 
     def __iter__(self) -> Iterator[str]:
-        error, name = ffi.new("bp_error *"), ffi.new("char[256]")
+        name = ffi.new("char[256]")
         for index in range(len(self)):
             with self._open() as handle:
-                check(lib.bp_archive_name(handle, index, name, error), error, self.path)
+                run(lib.bp_archive_name, handle, index, name, where=(self.path,))
             yield ffi.string(name).decode()
 
     def _find(self, name: str) -> int:
-        error, index = ffi.new("bp_error *"), ffi.new("uint64_t *")
+        index = ffi.new("uint64_t *")
         with self._open() as handle:
             try:
                 sought = name_bytes(name)
             except ValueError:
                 raise NotFound(lib.BP_ERROR_NOT_FOUND, f"there is no material {name!r}") from None
-            check(lib.bp_archive_find(handle, sought, index, error), error, self.path)
+            run(lib.bp_archive_find, handle, sought, index, where=(self.path,))
         return index[0]
 
     def __contains__(self, name: object) -> bool:
@@ -268,41 +274,21 @@ class Archive(Mapping, NoPickle):
         return problems
 
 
-class Use:
-    """The handle for the time of one call, during which another thread's close waits."""
-
-    def __init__(self, archive: Archive):
-        self._archive = archive
-
-    def __enter__(self):
-        archive = self._archive
-        with archive._lock:
-            if archive._closed:
-                raise ValueError(f"the archive {archive.path} is closed")
-            archive._uses += 1
-            return archive._handle
-
-    def __exit__(self, *_) -> None:
-        with self._archive._lock:
-            self._archive._uses -= 1
-        self._archive._drop()
-
-
 def open(source) -> Archive:  # noqa: A001
     """Opens the archive at a path, or one that bytes hold, which are not copied.
 
     Raises what Python's open would for a file that cannot be opened, and Error for one that is no archive, or damaged.
     """
-    error, handle = ffi.new("bp_error *"), ffi.new("bp_archive **")
+    handle = ffi.new("bp_archive **")
     if isinstance(source, bytes):
         held = ffi.from_buffer(source)
-        check(lib.bp_archive_open_memory(held, len(source), handle, error), error, "in memory")
+        run(lib.bp_archive_open_memory, held, len(source), handle, where=("in memory",))
         archive = Archive(handle[0], "in memory")
         archive._held = held  # type: ignore[attr-defined]  # for as long as the handle reads it
         return archive
     path = os.fspath(source)
     try:
-        check(lib.bp_archive_open(path_bytes(path), handle, error), error)
+        run(lib.bp_archive_open, path_bytes(path), handle)
     except Error as refused:
         name = path if isinstance(path, str) else os.fsdecode(path)
         if refused.status == lib.BP_ERROR_IO:

@@ -41,6 +41,22 @@ def check(status: int, error, *where: str) -> None:
     raise (NotFound if status == lib.BP_ERROR_NOT_FOUND else Error)(status, message, offset)
 
 
+def run(call, *arguments, where: tuple[str, ...] = ()) -> None:
+    """Calls a function of the library, whose last parameter is a bp_error, and raises what that says."""
+    error = ffi.new("bp_error *")
+    check(call(*arguments, error), error, *where)
+
+
+def taken(call, *arguments, where: tuple[str, ...] = ()) -> bytes:
+    """The bytes that such a function allocates, for which it has two parameters before the last."""
+    out, count = ffi.new("uint8_t **"), ffi.new("size_t *")
+    run(call, *arguments, out, count, where=where)
+    try:
+        return ffi.buffer(out[0], count[0])[:]
+    finally:
+        lib.bp_free(out[0])
+
+
 class NoPickle:
     """A base for what holds memory of the library."""
 

@@ -6,23 +6,23 @@ from typing import NamedTuple
 import numpy as np
 
 from ._arrays import pointer, real, result, strided, together, vectors
-from ._error import NoPickle, check
+from ._error import NoPickle, run
 from ._native import ffi, lib
 
 LAYOUTS = {"float32": (lib.BP_NUMBER_FLOAT, np.float32), "float64": (lib.BP_NUMBER_DOUBLE, np.float64), "float16": (lib.BP_NUMBER_HALF, np.float16)}
 
 
-def table_read(handle, index: int, shape: tuple[int, int, int], max_error: float, dtype, continued: bool, *where: str) -> np.ndarray:
+def table_read(handle, index: int, shape: tuple[int, int, int], max_error: float, dtype, continued: bool,
+               where: tuple[str, ...] = ()) -> np.ndarray:
     """The decoded table of one material: (H, D, P, 3), 1/sr."""
     name = np.dtype(dtype).name
     if name not in LAYOUTS:
         raise TypeError(f"a table holds float16, float32 or float64, not {name}")
     number, kind = LAYOUTS[name]
     values = np.empty(shape + (3,), kind)
-    error = ffi.new("bp_error *")
     options = ffi.new("bp_table_options *", {"struct_bytes": ffi.sizeof("bp_table_options"), "max_log_rmse": max_error, "number": number,
                                              "layout": lib.BP_LAYOUT_INTERLEAVED, "continued": int(bool(continued))})
-    check(lib.bp_archive_table(handle, index, options, ffi.cast("void *", values.ctypes.data), values.nbytes, error), error, *where)
+    run(lib.bp_archive_table, handle, index, options, ffi.cast("void *", values.ctypes.data), values.nbytes, where=where)
     return values
 
 
@@ -46,9 +46,8 @@ class Material(NoPickle):
         self._record = record
         self._max_error = max_error
         self._lattice = shape
-        error = ffi.new("bp_error *")
         loaded = ffi.new("bp_loaded *", {"struct_bytes": ffi.sizeof("bp_loaded")})
-        check(lib.bp_material_loaded(handle, loaded, error), error)
+        run(lib.bp_material_loaded, handle, loaded)
         self.name = name
         self.layers = loaded.layers
         self.log_rmse = loaded.log_rmse
@@ -121,14 +120,13 @@ class Material(NoPickle):
         stands for its centre. dtype: float16, float32 or float64. Cells below the horizon, beyond anything measured, are -1;
         with continued=True they hold the model's smooth continuation.
         """
-        error = ffi.new("bp_error *")
         writer, archive = ffi.new("bp_writer **"), ffi.new("bp_archive **")
         bytes_, count = ffi.new("uint8_t **"), ffi.new("size_t *")
-        check(lib.bp_writer_create(writer, error), error)
+        run(lib.bp_writer_create, writer)
         try:  # an archive of this one record, in memory
-            check(lib.bp_writer_add(writer[0], self._record, len(self._record), error), error)
-            check(lib.bp_writer_save_memory(writer[0], bytes_, count, error), error)
-            check(lib.bp_archive_open_memory(bytes_[0], count[0], archive, error), error)
+            run(lib.bp_writer_add, writer[0], self._record, len(self._record))
+            run(lib.bp_writer_save_memory, writer[0], bytes_, count)
+            run(lib.bp_archive_open_memory, bytes_[0], count[0], archive)
             return table_read(archive[0], 0, self._lattice, self._max_error, dtype, continued)
         finally:
             lib.bp_archive_close(archive[0])

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ._archive import ZEROS
-from ._error import Error, NoPickle, check
+from ._error import Error, NoPickle, run, taken
 from ._native import ffi, lib
 from ._text import name_bytes, path_bytes
 
@@ -114,7 +114,6 @@ def pack(table, budget: int | None = None, *, name: str | None = None, max_error
         masked = np.ascontiguousarray(np.asarray(mask) != 0, np.uint8)
         if masked.shape != tuple(shape):
             raise ValueError(f"the mask has shape {masked.shape}, the table {tuple(shape)}")
-    error, record, count = ffi.new("bp_error *"), ffi.new("uint8_t **"), ffi.new("size_t *")
     watch = Watch(progress)
     handle = ffi.new_handle(watch)
     watched = progress is not None or threading.current_thread() is threading.main_thread()
@@ -126,15 +125,13 @@ def pack(table, budget: int | None = None, *, name: str | None = None, max_error
     options = ffi.new("bp_pack_options *", {
         "struct_bytes": ffi.sizeof("bp_pack_options"), "profile": PROFILES[profile], "budget_bytes": option(budget, "budget"), "max_error": max_error or 0.0,
         "effort": option(effort, "effort"), "zeros": ZEROS.index(zeros), "progress": lib.tell_python if watched else ffi.NULL, "user": handle})
-    status = lib.bp_pack(measured, name_bytes("material" if name is None else name), options, record, count, error)
-    if watch.raised is not None:
-        lib.bp_free(record[0])
-        raise watch.raised
-    check(status, error)
     try:
-        packed = ffi.buffer(record[0], count[0])[:]
-    finally:
-        lib.bp_free(record[0])
+        packed = taken(lib.bp_pack, measured, name_bytes("material" if name is None else name), options)
+    except (Error, MemoryError):
+        if watch.raised is None:
+            raise
+    if watch.raised is not None:
+        raise watch.raised
     holes = int.from_bytes(packed[52:56], "little") & 0xFFFFFFF  # FORMAT.md, section 5
     if holes and zeros == "auto":
         warnings.warn(f"{name or 'material'}: no value is negative, and {holes} cells below the horizon hold one value: treated as not "
@@ -152,8 +149,8 @@ class Writer(NoPickle):
     """
 
     def __init__(self, path=None):
-        error, handle = ffi.new("bp_error *"), ffi.new("bp_writer **")
-        check(lib.bp_writer_create(handle, error), error)
+        handle = ffi.new("bp_writer **")
+        run(lib.bp_writer_create, handle)
         self._handle = ffi.gc(handle[0], lib.bp_writer_free)
         self._path = None if path is None else path_bytes(path)
         self._lock = threading.Lock()
@@ -166,29 +163,17 @@ class Writer(NoPickle):
         """Adds a record under a name, or, name None, under its own. A record that is refused leaves the writer as it was."""
         if not isinstance(record, bytes):
             raise TypeError(f"a record is bytes, as brdfpack.pack gives it, not {type(record).__name__}")
-        error = ffi.new("bp_error *")
         with self._lock:
             if self._closed:
                 raise ValueError("the writer is closed")
-            if name is None:
-                check(lib.bp_writer_add(self._handle, record, len(record), error), error)
-                return
-            out, count = ffi.new("uint8_t **"), ffi.new("size_t *")
-            check(lib.bp_record_rename(record, len(record), name_bytes(name), out, count, error), error)
-            try:
-                check(lib.bp_writer_add(self._handle, out[0], count[0], error), error)
-            finally:
-                lib.bp_free(out[0])
+            if name is not None:
+                record = taken(lib.bp_record_rename, record, len(record), name_bytes(name))
+            run(lib.bp_writer_add, self._handle, record, len(record))
 
     def bytes(self) -> bytes:
         """The archive as it is now, in memory."""
-        error, out, count = ffi.new("bp_error *"), ffi.new("uint8_t **"), ffi.new("size_t *")
         with self._lock:
-            check(lib.bp_writer_save_memory(self._handle, out, count, error), error)
-        try:
-            return ffi.buffer(out[0], count[0])[:]
-        finally:
-            lib.bp_free(out[0])
+            return taken(lib.bp_writer_save_memory, self._handle)
 
     def close(self) -> None:
         """Writes the archive to its path; again does nothing."""
@@ -196,8 +181,7 @@ class Writer(NoPickle):
             if self._closed:
                 return
             if self._path is not None:
-                error = ffi.new("bp_error *")
-                check(lib.bp_writer_save(self._handle, self._path, error), error)
+                run(lib.bp_writer_save, self._handle, self._path)
             self._closed = True
 
     def __enter__(self) -> "Writer":

@@ -68,29 +68,23 @@ static bp_status archive_write(struct build *build, bool *written, bp_error *err
 	struct archive_writer *writer = NULL;
 	uint8_t *record = NULL;
 	size_t room = 0;
+	bool stopped = false;
 
 	items_sort(&build->items);
 	bp_status status = archive_writer_open(build->options->output, &writer, error);
-	for (size_t i = 0; i < build->items.count && !status; i++) {
+	for (size_t i = 0; i < build->items.count && !status && !(stopped = interrupt_came()); i++) {
 		const struct item *item = &build->items.item[i];
 		if (item->state != ITEM_PACKED)
 			continue;
-		if (interrupt_signal()) {
-			archive_writer_discard(writer);
-			free(record);
-			return BP_OK;
-		}
-		if (!(record = memory_roomy(record, &room, item->record_bytes))) {
-			status = error_memory(error, item->record_bytes);
-			break;
-		}
-		status = journal_read(&build->journal, item->journal_offset, record, item->record_bytes, error);
+		record = memory_roomy(record, &room, item->record_bytes);
+		status = record ? journal_read(&build->journal, item->journal_offset, record, item->record_bytes, error)
+		                : error_memory(error, item->record_bytes);
 		if (!status)
 			status = archive_writer_add(writer, record, item->record_bytes, error);
 		build->totals.archive_bytes += item->record_bytes;
 	}
 	free(record);
-	if (status) {
+	if (status || stopped) {
 		archive_writer_discard(writer);
 		return status;
 	}

@@ -1,5 +1,6 @@
 #include "build_inputs.h"
 
+#include "descriptor.h"
 #include "error.h"
 #include "merl/rgl_file.h"
 #include "merl/two_halves.h"
@@ -9,7 +10,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* An input, as a whole or from here on. */
 static void damage_take(struct build *build, const char *path, const bp_error *error)
@@ -158,14 +158,10 @@ static bp_status member_copy(struct build *build, int fd, uint64_t *bytes, bp_er
 		status = container_read(build->stream, chunk, wanted, &got, error);
 		if (status || got == 0)
 			break;
-		for (size_t at = 0; at < got && !status;) {
-			ssize_t put = pwrite(fd, chunk + at, got - at, (off_t)(done + at));
-			if (put < 0 && errno != EINTR)
-				status = error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "cannot keep the member in memory: %s", strerror(errno));
-			at += put > 0 ? (size_t)put : 0;
-		}
-		if (status)
+		if (descriptor_write(fd, chunk, got, (off_t)done) < got) {
+			status = error_set(error, BP_ERROR_MEMORY, BP_NO_OFFSET, "cannot keep the member in memory: %s", strerror(errno));
 			break;
+		}
 		done += got;
 		workers_wait(build->workers, 0); /* their pipes should not run full meanwhile */
 	}

@@ -2,6 +2,7 @@
 
 #include "archive/merge.h"
 #include "codec/record_carried.h"
+#include "descriptor.h"
 #include "error.h"
 #include "merl/sha256.h"
 #include "stage.h"
@@ -23,15 +24,11 @@ static bp_status slot_read(void *user, void *bytes, size_t capacity, size_t *cou
 	struct slot_reader *slot = user;
 	size_t wanted = capacity < slot->left ? capacity : (size_t)slot->left;
 	/* pread: the descriptor's position is shared with the parent and the other workers */
-	ssize_t got;
-	do
-		got = pread(slot->fd, bytes, wanted, (off_t)slot->offset);
-	while (got < 0 && errno == EINTR);
-	if (got < 0)
+	*count = descriptor_read(slot->fd, bytes, wanted, (off_t)slot->offset);
+	if (*count < wanted && errno)
 		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the copied member: %s", strerror(errno));
-	slot->offset += (uint64_t)got;
-	slot->left -= (uint64_t)got;
-	*count = (size_t)got;
+	slot->offset += *count;
+	slot->left -= *count;
 	return BP_OK;
 }
 

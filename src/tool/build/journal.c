@@ -1,6 +1,7 @@
 #include "journal.h"
 
 #include "bytes.h"
+#include "descriptor.h"
 #include "error.h"
 
 #include <errno.h>
@@ -8,20 +9,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-static bp_status put(int fd, const uint8_t *bytes, size_t count, uint64_t offset, bp_error *error)
-{
-	for (size_t done = 0; done < count;) {
-		const ssize_t written = pwrite(fd, bytes + done, count - done, (off_t)(offset + done));
-		if (written < 0 && errno == EINTR)
-			continue;
-		if (written <= 0)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot write beside it: %s",
-			                 strerror(written < 0 ? errno : ENOSPC));
-		done += (size_t)written;
-	}
-	return BP_OK;
-}
 
 /* What an entry's head says of its record. */
 static uint32_t entry_crc(const uint8_t head[JOURNAL_ENTRY_BYTES], const uint8_t *record, size_t record_bytes)
@@ -35,41 +22,26 @@ bp_status journal_add(struct journal *journal, const uint8_t *record, size_t rec
 	store_u32(head + 4, (uint32_t)record_bytes);
 	store_u32(head + 8, entry_crc(head, record, record_bytes));
 	/* The head last: an entry without it is torn, whatever stands behind. */
-	bp_status status = put(journal->fd, record, record_bytes, journal->bytes + sizeof head, error);
-	if (!status)
-		status = put(journal->fd, head, sizeof head, journal->bytes, error);
-	if (status)
-		return status;
+	if (descriptor_write(journal->fd, record, record_bytes, (off_t)(journal->bytes + sizeof head)) < record_bytes ||
+	    descriptor_write(journal->fd, head, sizeof head, (off_t)journal->bytes) < sizeof head)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot write beside it: %s", strerror(errno));
 	*offset = journal->bytes + sizeof head;
 	journal->bytes += sizeof head + record_bytes;
 	journal->added++;
 	return BP_OK;
 }
 
-static bp_status get(int fd, uint8_t *bytes, size_t count, uint64_t offset, bp_error *error)
-{
-	for (size_t done = 0; done < count;) {
-		const ssize_t got = pread(fd, bytes + done, count - done, (off_t)(offset + done));
-		if (got < 0 && errno == EINTR)
-			continue;
-		if (got <= 0)
-			return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the finished records beside it: %s",
-			                 strerror(got < 0 ? errno : EIO));
-		done += (size_t)got;
-	}
-	return BP_OK;
-}
-
 bp_status journal_read(const struct journal *journal, uint64_t offset, uint8_t *record, uint32_t record_bytes, bp_error *error)
 {
 	uint8_t head[JOURNAL_ENTRY_BYTES];
-	bp_status status = get(journal->fd, head, sizeof head, offset - sizeof head, error);
-	if (!status)
-		status = get(journal->fd, record, record_bytes, offset, error);
-	if (!status && (load_u32(head + 4) != record_bytes || load_u32(head + 8) != entry_crc(head, record, record_bytes)))
-		status = error_set(error, BP_ERROR_IO, BP_NO_OFFSET, /* no archive is damaged, and `recover` is no remedy */
-		                   "the finished records beside it have changed while it ran; has another build the same output?");
-	return status;
+	if (descriptor_read(journal->fd, head, sizeof head, (off_t)(offset - sizeof head)) < sizeof head ||
+	    descriptor_read(journal->fd, record, record_bytes, (off_t)offset) < record_bytes)
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, "cannot read the finished records beside it: %s",
+		                 strerror(errno ? errno : EIO));
+	if (load_u32(head + 4) != record_bytes || load_u32(head + 8) != entry_crc(head, record, record_bytes))
+		return error_set(error, BP_ERROR_IO, BP_NO_OFFSET, /* no archive is damaged, and `recover` is no remedy */
+		                 "the finished records beside it have changed while it ran; has another build the same output?");
+	return BP_OK;
 }
 
 const struct journal_entry *journal_find(const struct journal *journal, const char *name)

@@ -4,6 +4,7 @@
 #include "tool/facts.h"
 #include "tool/options.h"
 #include "tool/report.h"
+#include "tool/workers.h"
 
 #include "codec/record.h"
 
@@ -58,8 +59,8 @@ static int build_main(const struct command *self, int argc, char **argv)
 	int64_t budget = 0;
 	uint32_t effort = EFFORT_USUAL;
 	const struct option_rule rules[] = {
-		{"output", 'o', option_text, .to = &options.output},
-		{"jobs", 'j', option_jobs, .to = &options.workers},
+		{"output", 'o', option_output, .to = &options.output},
+		{"jobs", 'j', option_integer, &options.workers, 1, WORKERS_MAX},
 		{"quiet", 'q', option_flag, .to = &options.quiet},
 		{"profile", 0, option_profile, .to = &options.fit.profile},
 		{"budget", 0, option_bytes, &budget, RECORD_BUDGET_MIN, RECORD_BUDGET_MAX},
@@ -79,8 +80,6 @@ static int build_main(const struct command *self, int argc, char **argv)
 	int code = options_read(self, argc, argv, rules);
 	if (code != OPTIONS_END)
 		return code;
-	if (!option_output(self, options.output, "OUT.bpk"))
-		return EXIT_USAGE;
 	if (optind >= argc)
 		return report_usage(self, "no input; give measured files, folders, tar or zip files");
 	if (budget && options.fit.max_error > 0)

@@ -30,7 +30,6 @@ struct compare {
 	struct measured_set measured; /* a name is NULL where there is nothing to measure */
 	struct compare_item *items;
 	size_t count, printed, failed;
-	bool headed;      /* the table's head has been printed */
 	bool images_made; /* the pictures' folder is ours */
 	struct compare_job job;
 };
@@ -129,9 +128,6 @@ static void rows_print(struct compare *compare)
 			report_error(compare->archive_path, item->name, &item->error);
 		if (item->error.status)
 			continue;
-		if (!compare->headed)
-			compare_report_head(&compare->report);
-		compare->headed = true;
 		compare_report_row(&compare->report, item);
 	}
 	fflush(stdout);
@@ -163,11 +159,8 @@ static bp_status materials_measure(struct compare *compare, bp_error *error)
 	                                        .work_user = &compare->job,
 	                                        .result = result_take,
 	                                        .result_user = compare};
-	struct lattice_dims dims;
 	compare->job.items = compare->measured.item;
-	/* before the fork, so that the workers share the plans' memory */
-	bp_status status =
-		selection_dims(&compare->selection, &dims) ? comparison_plans_make(&compare->job.plans, dims, error) : BP_OK;
+	const bp_status status = selection_plans_make(&compare->selection, &compare->job.plans, error);
 	return status == BP_OK ? workers_run(&options, compare->measured.name, compare->count, error) : status;
 }
 
@@ -215,7 +208,7 @@ static int compare_main(const struct command *self, int argc, char **argv)
 	                                    {"size", 0, option_integer, &size, 1, COMPARE_SIZE_MAX},
 	                                    {"json", 0, option_flag, .to = &compare.report.json},
 	                                    {"images", 0, option_text, .to = &compare.images},
-	                                    {"jobs", 'j', option_jobs, .to = &compare.workers},
+	                                    {"jobs", 'j', option_integer, &compare.workers, 1, WORKERS_MAX},
 	                                    {"force", 0, option_flag, .to = &compare.force},
 	                                    {0}};
 	int code = options_read(self, argc, argv, rules);

@@ -31,22 +31,17 @@ static void room_free(struct decoded_room *room)
 	*room = (struct decoded_room){.any_lattice = room->any_lattice};
 }
 
-static bp_status room_fit(struct decoded_room *room, const struct model *model, bp_error *error)
+/* For a table of that record; decoding allocates it where there is none. */
+static bp_status room_fit(struct decoded_room *room, const struct record_head *head, bp_error *error)
 {
-	if (room->below && lattice_dims_equal(room->expansion.dims, model->dims) && room->limit == model->horizon_limit)
+	if (room->below && lattice_dims_equal(room->expansion.dims, head->dims) && room->limit == head->horizon_limit)
 		return BP_OK;
 	room_free(room);
-	size_t cells = lattice_cells(model->dims);
-	bp_status status = expansion_alloc(model->dims, &room->expansion, error);
-	if (status)
-		return status;
-	room->below = malloc(cells);
-	if (!room->below) {
-		room_free(room);
-		return error_memory(error, cells);
-	}
-	lattice_below_horizon(model->dims, model->horizon_limit, room->below);
-	room->limit = model->horizon_limit;
+	room->below = malloc(lattice_cells(head->dims));
+	if (!room->below)
+		return error_memory(error, lattice_cells(head->dims));
+	lattice_below_horizon(head->dims, head->horizon_limit, room->below);
+	room->limit = head->horizon_limit;
 	return BP_OK;
 }
 
@@ -81,18 +76,14 @@ static bp_status record_read(const struct selection *selection, const struct ind
 static bp_status merl_write(const struct selection *selection, const struct index_entry *entry, const struct record_head *head,
                             const char *path, enum output_rule rule, bool plain, struct decoded_room *room, bp_error *error)
 {
-	struct model *model = NULL;
 	uint8_t *record = NULL;
-	bp_status status = archive_entry_load(selection->archive, entry, head, 0, &model, error);
+	bp_status status = room_fit(room, head, error);
+	if (!status)
+		status = archive_entry_expand(selection->archive, entry, head, 0, &room->expansion, error);
 	if (!status && !plain)
 		status = record_read(selection, entry, &record, error);
 	if (!status)
-		status = room_fit(room, model, error);
-	if (!status)
-		status = model_expand(model, 0, &room->expansion, error);
-	if (!status)
 		status = lattice_write_path(path, rule, &room->expansion, room->below, record, record ? head->record_bytes : 0, error);
-	model_free(model);
 	free(record);
 	return status;
 }
@@ -133,10 +124,7 @@ static bp_status json_write(const struct record_head *head, const struct origin 
 	FILE *memory = memory_stream_open(&text);
 	if (!memory)
 		return error_memory(error, BUFSIZ);
-	struct json json = json_begin(memory, true);
-	json_string(&json, "name", head->name);
-	facts_full(&json, head, origin);
-	json_finish(&json);
+	facts_print(memory, true, head, origin);
 	fclose(memory);
 	bp_status status =
 		text.failed ? error_memory(error, text.count) : output_file_write_whole(path, rule, text.bytes, text.count, error);

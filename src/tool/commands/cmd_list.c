@@ -134,14 +134,6 @@ static void material_print(const struct record_head *head, const struct origin *
 	printf("%s\n", head->left_out ? "" : " no pair");
 }
 
-static void material_json(const struct record_head *head, const struct origin *origin)
-{
-	struct json json = json_begin(stdout, false);
-	json_string(&json, "name", head->name);
-	facts_full(&json, head, origin);
-	json_finish(&json);
-}
-
 static void totals_json(const struct selection *selection, const struct totals *totals, const char *sha256)
 {
 	struct json json = json_begin(stdout, false);
@@ -197,7 +189,7 @@ static int list_main(const struct command *self, int argc, char **argv)
 			totals.failed++;
 		}
 		if (json)
-			material_json(&head, &origin);
+			facts_print(stdout, false, &head, &origin);
 		else if (selection.all)
 			row_print(&head, width);
 		else

@@ -50,7 +50,7 @@ static int merge_main(const struct command *self, int argc, char **argv)
 	struct copy_options options = {.stop = interrupt_came};
 	bool quiet = false, force = false;
 	bp_error error;
-	const struct option_rule rules[] = {{"output", 'o', option_text, .to = &options.output},
+	const struct option_rule rules[] = {{"output", 'o', option_output, .to = &options.output},
 	                                    {"quiet", 'q', option_flag, .to = &quiet},
 	                                    {"replace", 0, option_flag, .to = &options.replace},
 	                                    {"expect", 0, option_integer, &options.shards, 1, 65536},
@@ -59,8 +59,6 @@ static int merge_main(const struct command *self, int argc, char **argv)
 	int code = options_read(self, argc, argv, rules);
 	if (code != OPTIONS_END)
 		return code;
-	if (!option_output(self, options.output, "OUT.bpk"))
-		return EXIT_USAGE;
 	if (optind >= argc)
 		return report_usage(self, "no archive");
 

@@ -18,12 +18,10 @@ static int recover_main(const struct command *self, int argc, char **argv)
 	bool force = false;
 	bp_error error;
 	const struct option_rule rules[] = {
-		{"output", 'o', option_text, .to = &output}, {"force", 0, option_flag, .to = &force}, {0}};
+		{"output", 'o', option_output, .to = &output}, {"force", 0, option_flag, .to = &force}, {0}};
 	int code = options_read(self, argc, argv, rules);
 	if (code != OPTIONS_END)
 		return code;
-	if (!option_output(self, output, "OUT.bpk"))
-		return EXIT_USAGE;
 	if (argc - optind != 1)
 		return report_usage(self, argc == optind ? "no archive" : "more than one archive");
 	if (!output_check(output, OUTPUT_KIND_ARCHIVE, force, (const char *const *)argv + optind, 1))

@@ -4,6 +4,7 @@
 #include "tool/output_check.h"
 #include "tool/report.h"
 #include "tool/report_page/page.h"
+#include "tool/workers.h"
 
 #include "render/lights.h"
 
@@ -13,11 +14,11 @@ static int report_main(const struct command *self, int argc, char **argv)
 	struct selection selection;
 	enum lighting lighting = LIGHTING_COUNT;
 	bool force = false;
-	const struct option_rule rules[] = {{"output", 'o', option_text, .to = &options.output},
+	const struct option_rule rules[] = {{"output", 'o', option_output, .to = &options.output},
 	                                    {"measured", 0, option_text, .to = &options.measured},
 	                                    {"light", 0, option_light, .to = &lighting},
 	                                    {"embed", 0, option_flag, .to = &options.embed},
-	                                    {"jobs", 'j', option_jobs, .to = &options.workers},
+	                                    {"jobs", 'j', option_integer, &options.workers, 1, WORKERS_MAX},
 	                                    {"quiet", 'q', option_flag, .to = &options.quiet},
 	                                    {"force", 0, option_flag, .to = &force},
 	                                    {0}};
@@ -25,8 +26,6 @@ static int report_main(const struct command *self, int argc, char **argv)
 	if (code != OPTIONS_END)
 		return code;
 	options.lightings = lightings_of(lighting);
-	if (!option_output(self, options.output, "OUT.html"))
-		return EXIT_USAGE;
 	if (!text_ends_with(options.output, ".html"))
 		return report_usage(self, "-o: '%s' does not end in .html", options.output);
 	if (optind < argc && !output_check(options.output, OUTPUT_KIND_PAGE, force, (const char *const *)argv + optind, 1))

@@ -96,6 +96,7 @@ static bp_status reference_read(const char *path, const struct record_head *head
 static bp_status material_pack(struct show *show, const struct show_options *options, bp_error *error)
 {
 	struct material *material = &show->material;
+	struct model *model = NULL;
 	const struct record_source source = {0};
 	uint8_t *record = NULL;
 	size_t record_bytes;
@@ -105,10 +106,11 @@ static bp_status material_pack(struct show *show, const struct show_options *opt
 		status = record_encode(&material->lattice, material->name, &source, &options->fit, &record, &record_bytes,
 		                       &material->head, error);
 	if (status == BP_OK)
-		status = record_decode_whole(&material->head, 0, record, &material->model, error);
-	free(record);
+		status = record_decode_whole(&material->head, 0, record, &model, error);
 	if (status == BP_OK)
-		status = model_expand(material->model, 0, &material->table, error);
+		status = model_expand(model, 0, &material->table, error);
+	model_free(model);
+	free(record);
 	return status;
 }
 
@@ -126,8 +128,8 @@ static bp_status show_measure(struct show *show, bp_error *error)
 		return BP_ERROR_BAD_INPUT;
 	error_profile(show->truth, &material->table, show->error_after);
 	show->figure.error_after = show->error_after;
-	if (material->model->profile == PROFILE_PAPER) {
-		error_profile_uncoded(show->truth, material->model->colour, show->error_before);
+	if (material->head.profile == PROFILE_PAPER) {
+		error_profile_uncoded(show->truth, material->head.colour, show->error_before);
 		show->figure.error_before = show->error_before;
 	}
 	if ((status = density_source_measured(show->truth, &show->measured, error)) != BP_OK)
@@ -139,7 +141,7 @@ static void figure_describe(struct show *show, const struct show_options *option
 {
 	struct figure *figure = &show->figure;
 	const struct material *material = &show->material;
-	const char *profile = profile_name(material->model->profile);
+	const char *profile = profile_name(material->head.profile);
 
 	figure->dims = material->table.dims;
 	snprintf(figure->title, sizeof figure->title, "%s, profile %s: %sdensity c(theta_d, phi_d | theta_h)", material->name,

@@ -162,7 +162,7 @@ static bool scene_take(const struct command *self, const struct option_rule *rul
 static int subset_main(const struct command *self, int argc, char **argv)
 {
 	struct subset subset = {.copy = {.stop = interrupt_came}, .inputs = calloc((size_t)argc + 1, sizeof *subset.inputs)};
-	const struct option_rule rules[] = {{"output", 'o', option_text, .to = &subset.copy.output},
+	const struct option_rule rules[] = {{"output", 'o', option_output, .to = &subset.copy.output},
 	                                    {"quiet", 'q', option_flag, .to = &subset.quiet},
 	                                    {"max-error", 0, option_number, &subset.copy.max_log_rmse, 1e-6, 10},
 	                                    {"scene", 0, scene_take, .to = &subset},
@@ -172,8 +172,6 @@ static int subset_main(const struct command *self, int argc, char **argv)
 	if (!subset.inputs)
 		return report_text("out of memory");
 	int code = options_read(self, argc, argv, rules);
-	if (code == OPTIONS_END && !option_output(self, subset.copy.output, "SCENE.bpk"))
-		code = EXIT_USAGE;
 	if (code == OPTIONS_END && optind >= argc)
 		code = report_usage(self, "no archive");
 	if (code == OPTIONS_END) {

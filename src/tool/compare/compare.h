@@ -42,14 +42,14 @@ struct compare_job {
 /* A worker_fn: job->number is the item's. */
 bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **record, size_t *record_bytes, bp_error *error);
 
-/* How rows are printed; fixed before the first. */
+/* How rows are printed; the first three are fixed before the first. */
 struct compare_report {
 	bool json;
 	unsigned lightings;
 	int name_width; /* columns of the widest name */
+	bool headed;    /* the table's head has been printed */
 };
-void compare_report_head(const struct compare_report *report);
-void compare_report_row(const struct compare_report *report, const struct compare_item *item);
+void compare_report_row(struct compare_report *report, const struct compare_item *item);
 /* Median, worst and mean of the items that did not fail, when there are any. */
 bp_status compare_report_summary(const struct compare_report *report, const struct compare_item *items, size_t count,
                                  size_t failed_count, bp_error *error);

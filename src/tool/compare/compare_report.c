@@ -91,12 +91,6 @@ static void block_head(const struct compare_report *report, enum block block)
 	}
 }
 
-void compare_report_head(const struct compare_report *report)
-{
-	if (!report->json)
-		block_head(report, BLOCK_SPHERES);
-}
-
 static void text_row(const struct compare_report *report, enum block block, const char *name, const double values[FIGURE_COUNT],
                      const struct worst_cell *worst)
 {
@@ -147,14 +141,18 @@ static void json_row(const struct compare_report *report, const struct compare_i
 	json_finish(&json);
 }
 
-void compare_report_row(const struct compare_report *report, const struct compare_item *item)
+void compare_report_row(struct compare_report *report, const struct compare_item *item)
 {
 	double values[FIGURE_COUNT];
 	figures_of(item, values);
-	if (report->json)
+	if (report->json) {
 		json_row(report, item, values);
-	else
-		text_row(report, BLOCK_SPHERES, item->name, values, NULL);
+		return;
+	}
+	if (!report->headed)
+		block_head(report, BLOCK_SPHERES);
+	report->headed = true;
+	text_row(report, BLOCK_SPHERES, item->name, values, NULL);
 }
 
 enum { MEDIAN, WORST, MEAN, SUMMARY_ROWS };

@@ -6,18 +6,6 @@
 
 #include "error.h"
 
-static bp_status decoded_load(const struct compare_job *job, const struct measured_item *item, const struct record_head *head,
-                              uint32_t layers, struct expansion *table, bp_error *error)
-{
-	struct model *model;
-	bp_status status = archive_entry_load(job->archive, &item->entry, head, layers, &model, error);
-	if (status != BP_OK)
-		return status;
-	status = model_expand(model, 0, table, error);
-	model_free(model);
-	return status;
-}
-
 static bool figure_alike(double recorded, double measured) { return fabs(recorded - measured) <= 1e-9 * fabs(measured); }
 
 static bp_status figures_confirm(const struct record_head *head, uint32_t layer, const struct fidelity *measured, bp_error *error)
@@ -43,7 +31,7 @@ static bp_status layers_confirm(const struct compare_job *job, const struct meas
 	bp_status status = figures_confirm(head, head->layer_count - 1, last, error);
 	for (uint32_t l = 0; status == BP_OK && l + 1 < head->layer_count; l++) {
 		struct fidelity measured;
-		status = decoded_load(job, item, head, l + 1, table, error);
+		status = archive_entry_expand(job->archive, &item->entry, head, l + 1, table, error);
 		if (status == BP_OK)
 			status = fidelity_measure(lattice, table, 1, &measured, error);
 		if (status == BP_OK)
@@ -67,7 +55,7 @@ bp_status compare_work(void *user, const struct job *job, int fd, uint8_t **reco
 	(void)fd;
 	if ((status = archive_entry_head(compare->archive, &item->entry, &head, error)) ||
 	    (status = measured_read(item->source, &compare->cursor, &head, &lattice, &result.confirmed, error)) ||
-	    (status = decoded_load(compare, item, &head, 0, &table, error)))
+	    (status = archive_entry_expand(compare->archive, &item->entry, &head, 0, &table, error)))
 		goto out;
 	result.record_bytes = head.record_bytes;
 	status = comparison_measure(&compare->plans, &lattice, &table, &result.comparison, compare->images ? pictures : NULL, error);

@@ -150,25 +150,11 @@ void deviation_reference_free(struct deviation_reference *reference)
 	free(reference);
 }
 
-static void pair_get(const struct pairs *pairs, size_t n, float wi[3], float wo[3])
+static void pair_evaluate(const struct pairs *pairs, size_t n, exported_evaluate *evaluate, const void *exported, double value[3])
 {
-	for (int axis = 0; axis < 3; axis++) {
-		wi[axis] = pairs->wi[axis][n];
-		wo[axis] = pairs->wo[axis][n];
-	}
-}
-
-static void exported_draw(const struct pairs *pairs, const struct shaded *shaded, exported_evaluate *evaluate,
-                          const void *exported, float *pixels)
-{
-	for (size_t k = 0; k < pairs->count; k++) {
-		float wi[3], wo[3];
-		double value[3];
-		pair_get(pairs, k, wi, wo);
-		evaluate(exported, wi, wo, value);
-		for (int c = 0; c < 3; c++)
-			pixels[3 * shaded[k].pixel + (uint32_t)c] += (float)value[c] * shaded[k].weight;
-	}
+	const float wi[3] = {pairs->wi[0][n], pairs->wi[1][n], pairs->wi[2][n]};
+	const float wo[3] = {pairs->wo[0][n], pairs->wo[1][n], pairs->wo[2][n]};
+	evaluate(exported, wi, wo, value);
 }
 
 static double albedo_deviation(int n, const struct deviation_reference *reference, exported_evaluate *evaluate,
@@ -177,12 +163,10 @@ static double albedo_deviation(int n, const struct deviation_reference *referenc
 	const double *wanted = reference->albedo[n];
 	double sum[3] = {0}, off = 0;
 	for (size_t k = 0; k < reference->half[n].count; k++) {
-		float wi[3], wo[3];
 		double value[3];
 		if (reference->weight[n][k] <= 0)
 			continue;
-		pair_get(&reference->half[n], k, wi, wo);
-		evaluate(exported, wi, wo, value);
+		pair_evaluate(&reference->half[n], k, evaluate, exported, value);
 		for (int c = 0; c < 3; c++)
 			sum[c] += value[c] * reference->weight[n][k];
 	}
@@ -194,9 +178,15 @@ static double albedo_deviation(int n, const struct deviation_reference *referenc
 static bp_status sphere_deviation(int n, const struct deviation_reference *reference, exported_evaluate *evaluate,
                                   const void *exported, struct sphere_image *image, double *psnr, bp_error *error)
 {
+	const struct shaded *shaded = reference->shaded[n];
 	struct psnr figure;
 	memset(image->rgb, 0, 3 * sizeof(float) * SIZE * SIZE);
-	exported_draw(&reference->pairs[n], reference->shaded[n], evaluate, exported, image->rgb);
+	for (size_t k = 0; k < reference->pairs[n].count; k++) {
+		double value[3];
+		pair_evaluate(&reference->pairs[n], k, evaluate, exported, value);
+		for (int c = 0; c < 3; c++)
+			image->rgb[3 * shaded[k].pixel + (uint32_t)c] += (float)value[c] * shaded[k].weight;
+	}
 	const bp_status status = metrics_psnr(&reference->image[n], image, &figure, error);
 	*psnr = status ? 0 : figure.real;
 	return status;

@@ -1,7 +1,5 @@
 #include "export.h"
 
-#include "export_bsdf.h"
-#include "export_mbsdf.h"
 #include "model/table/table.h"
 
 enum { USUAL_BSDF = 2000000, USUAL_SPECTRAL = 8000000, USUAL_MBSDF = 20000000 };

@@ -35,4 +35,13 @@ enum { EXPORT_BYTES_MAX = 1 << 30 };
 bp_status export_material(const struct model *model, const char *name, const struct export_options *options,
                           struct byte_buffer *out, struct deviation *deviation, bp_error *error);
 
+/* Of one format, the same and the bytes of any material's smallest file: tensor files of the RGL database. */
+uint64_t export_bsdf_least(bool spectral);
+bp_status export_bsdf(const struct reflectance *reflectance, const char *name, const struct export_options *options,
+                      struct byte_buffer *out, struct deviation *deviation, bp_error *error);
+/* Measured BSDFs of NVIDIA's Material Definition Language. */
+uint64_t export_mbsdf_least(void);
+bp_status export_mbsdf(const struct reflectance *reflectance, const char *name, const struct export_options *options,
+                       struct byte_buffer *out, struct deviation *deviation, bp_error *error);
+
 #endif

@@ -1,4 +1,4 @@
-#include "export_bsdf.h"
+#include "export.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
  * the value beyond the outer ones; and it takes the mean of both orders of the directions. Isotropic materials that are not their
  * own mirror image become the mean of both.
  */
-#include "export_mbsdf.h"
+#include "export.h"
 
 #include <float.h>
 #include <math.h>

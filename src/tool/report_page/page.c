@@ -110,9 +110,7 @@ static bp_status materials_draw(struct page *page, bp_error *error)
 	                              .plans = {.lightings = options->lightings, .size = page->details ? SIZE_DETAILS : SIZE_SHEET}};
 	const struct workers_options pool = {
 		.count = options->workers, .work = page_work, .work_user = &page->job, .result = result_take, .result_user = page};
-	struct lattice_dims dims;
-	/* before the fork, so that the workers share the plans' memory */
-	bp_status status = selection_dims(page->selection, &dims) ? comparison_plans_make(&page->job.plans, dims, error) : BP_OK;
+	bp_status status = selection_plans_make(page->selection, &page->job.plans, error);
 	progress_start(!options->quiet);
 	if (status == BP_OK)
 		status = workers_run(&pool, page->measured.name, page->count, error);
@@ -220,9 +218,8 @@ int page_run(const struct page_options *options, struct selection *selection)
 	viewer_find(page);
 	bp_status status = items_read(page, &error);
 	if (status == BP_OK && options->embed && !page->viewer)
-		status = error_set(&error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                   "--embed: the viewer is not there, so nothing could read the archive; "
-		                   "`make viewer` builds it (Debian package emscripten)");
+		status = error_argument(&error, "--embed: the viewer is not there, so nothing could read the archive; "
+		                                "`make viewer` builds it (Debian package emscripten)");
 	if (status == BP_OK && options->measured)
 		status = measured_find(page, options->measured, &error);
 	if (status == BP_OK) /* before the work, so that nobody waits for what cannot be written */

@@ -16,7 +16,6 @@
 struct subject {
 	const struct measured_item *item;
 	struct record_head head;
-	struct model *model;
 	struct expansion table;
 	struct lattice lattice; /* the measured file; alloc'ed only where there is one */
 	bool measured;
@@ -28,7 +27,6 @@ struct subject {
 
 static void subject_free(struct subject *subject)
 {
-	model_free(subject->model);
 	expansion_free(&subject->table);
 	lattice_free(&subject->lattice);
 	for (int l = 0; l < LIGHTING_COUNT; l++)
@@ -343,7 +341,9 @@ bp_status page_work(void *user, const struct job *job, int fd, uint8_t **record,
 	memset(&result, 0, sizeof result); /* padding too: it travels between processes as bytes */
 	if (page->measured && !subject.item->source)
 		snprintf(subject.missing, sizeof subject.missing, "not compared: there is no measured file of that name");
-	bp_status status = material_decode(page->archive, &subject.item->entry, &subject.head, &subject.model, &subject.table, error);
+	bp_status status = archive_entry_head(page->archive, &subject.item->entry, &subject.head, error);
+	if (status == BP_OK)
+		status = archive_entry_expand(page->archive, &subject.item->entry, &subject.head, 0, &subject.table, error);
 	if (status == BP_OK)
 		status = subject.item->source ? measured_draw(page, &subject, error) : decoded_draw(page, &subject, error);
 	if (status != BP_OK)
