@@ -28,20 +28,26 @@ typedef float floats8_unaligned __attribute__((vector_size(32), aligned(4), may_
 #define FLOATS8_STORE(p, v) (*(floats8_unaligned *)(p) = (v))
 #define LANES_ALL(x) ((lanes4){(x), (x), (x), (x)})
 
-/* Doubles as wide as the target's vectors, where eight fit. Their sums are of four lanes all the same. */
+/* As many as the target's vectors take, where these hold eight doubles. Sums of doubles are of four lanes all the same. */
 #ifdef __AVX512F__
+typedef float floats_wide __attribute__((vector_size(64)));
+typedef float floats_wide_unaligned __attribute__((vector_size(64), aligned(4), may_alias));
 typedef double lanes_wide __attribute__((vector_size(64)));
 typedef double lanes_wide_unaligned __attribute__((vector_size(64), aligned(8), may_alias));
 #define WIDE_ALL(x) ((lanes_wide){(x), (x), (x), (x), (x), (x), (x), (x)})
 #define WIDE_ADD_TO(sum, v) \
 	((sum) += __builtin_shufflevector((v), (v), 0, 1, 2, 3), (sum) += __builtin_shufflevector((v), (v), 4, 5, 6, 7))
 #else
+typedef floats8 floats_wide;
+typedef floats8_unaligned floats_wide_unaligned;
 typedef lanes4 lanes_wide;
 typedef lanes4_unaligned lanes_wide_unaligned;
 #define WIDE_ALL(x) LANES_ALL(x)
 #define WIDE_ADD_TO(sum, v) ((sum) += (v))
 #endif
-enum { WIDE = sizeof(lanes_wide) / sizeof(double) };
+enum { WIDE = sizeof(lanes_wide) / sizeof(double), FLOATS_WIDE = sizeof(floats_wide) / sizeof(float) };
+#define FLOATS_WIDE_LOAD(p) ((floats_wide)(*(const floats_wide_unaligned *)(p)))
+#define FLOATS_WIDE_STORE(p, v) (*(floats_wide_unaligned *)(p) = (v))
 #define WIDE_LOAD(p) ((lanes_wide)(*(const lanes_wide_unaligned *)(p)))
 
 static inline double lanes_sum(const lanes4 *v) { return ((*v)[0] + (*v)[1]) + ((*v)[2] + (*v)[3]); }

@@ -142,8 +142,13 @@ static void row_take(const struct target *to, const struct spectral_row *row)
 	                       to->rgb[2] + row->row * to->cells};
 	float *const seen[3] = {out[0] + row->column, out[1] + row->column, out[2] + row->column};
 	kernels->spectral_values(row->field, row->width, m->base, rotation, most_of(m->unit), seen);
-	for (int c = 0; c < 3; c++)
-		sides_fill(row, out[c], sizeof(float), to->cells);
+	for (int c = 0; c < 3; c++) {
+		const float first = seen[c][0], last = seen[c][row->width - 1];
+		for (uint32_t k = 0; k < row->column; k++)
+			out[c][k] = first;
+		for (uint32_t k = row->column + row->width; k < to->cells; k++)
+			out[c][k] = last;
+	}
 }
 
 /* All rows, or those of the table of every second value. */

@@ -4,37 +4,43 @@
 #include "spectrum.h"
 
 /*
- * `rows` rows times 8 * vectors columns, both constants where this is inlined, and their product at most 8: the sums stay in
- * registers. The sum over k runs in ascending order.
+ * `rows` rows times `width` columns, both constants where this is inlined, and their product at most eight vectors: the sums stay
+ * in registers. The sum over k runs in ascending order.
  */
 static inline __attribute__((always_inline)) void KERNEL(product_part)(const float *x, size_t in_stride, size_t rows,
                                                                        size_t count, const float *matrix, size_t columns,
-                                                                       size_t vectors, float *y, size_t out_stride)
+                                                                       size_t width, float *y, size_t out_stride)
 {
-	floats8 sum[8] = {{0}};
+	const size_t vectors = width / FLOATS_WIDE;
+	floats_wide sum[8] = {{0}};
 
 	for (size_t k = 0; k < count; k++, matrix += columns)
 		for (size_t v = 0; v < vectors; v++)
 			for (size_t q = 0; q < rows; q++)
-				sum[q * vectors + v] += x[q * in_stride + k] * FLOATS8_LOAD(matrix + 8 * v);
+				sum[q * vectors + v] += x[q * in_stride + k] * FLOATS_WIDE_LOAD(matrix + FLOATS_WIDE * v);
 	for (size_t q = 0; q < rows; q++)
 		for (size_t v = 0; v < vectors; v++)
-			FLOATS8_STORE(y + q * out_stride + 8 * v, sum[q * vectors + v]);
+			FLOATS_WIDE_STORE(y + q * out_stride + FLOATS_WIDE * v, sum[q * vectors + v]);
 }
 
-/* Four rows times 16 columns at once; of a row that is left, 48 columns, then 16. */
+/* Four or eight rows times 16 columns at once; of a row that is left, 48 columns, then 16. */
 static void KERNEL(cosine_product)(const float *in, size_t in_stride, size_t rows, size_t count, const float *matrix,
                                    size_t columns, float *out, size_t out_stride)
 {
+	enum { ROWS = FLOATS_WIDE / 2 };
+
+	for (; rows >= ROWS; rows -= ROWS, in += ROWS * in_stride, out += ROWS * out_stride)
+		for (size_t c = 0; c < columns; c += 16)
+			KERNEL(product_part)(in, in_stride, ROWS, count, matrix + c, columns, 16, out + c, out_stride);
 	for (; rows >= 4; rows -= 4, in += 4 * in_stride, out += 4 * out_stride)
 		for (size_t c = 0; c < columns; c += 16)
-			KERNEL(product_part)(in, in_stride, 4, count, matrix + c, columns, 2, out + c, out_stride);
+			KERNEL(product_part)(in, in_stride, 4, count, matrix + c, columns, 16, out + c, out_stride);
 	for (; rows; rows--, in += in_stride, out += out_stride) {
 		size_t c = 0;
 		for (; c + 48 <= columns; c += 48)
-			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 6, out + c, out_stride);
+			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 48, out + c, out_stride);
 		for (; c < columns; c += 16)
-			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 2, out + c, out_stride);
+			KERNEL(product_part)(in, in_stride, 1, count, matrix + c, columns, 16, out + c, out_stride);
 	}
 }
 
