@@ -45,8 +45,10 @@ bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_su
 			at++;
 		if (at == last)
 			continue;
-		for (int c = 0; c < 3; c++)
+		for (int c = 0; c < 3; c++) {
+			__builtin_prefetch(&lattice->rgb[c][at + 8 * every]);
 			y[c][n] = lattice->rgb[c][at];
+		}
 		out->x[n] = y[0][n] / 3 + y[1][n] / 3 + y[2][n] / 3;
 		n++;
 	}

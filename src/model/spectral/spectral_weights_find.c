@@ -55,6 +55,8 @@ static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 
 	for (uint32_t k = (3 * i + 5 * j) % every; k < d.phi_d; k += every) {
 		const double a = c->cos_d[j] * c->cos_h[i], b = c->sin_d[j] * c->sin_h[i] * fabs(c->cos_p[k]);
+		for (int q = 0; q < 3; q++) /* a cell of the row after next: no processor foresees where a row's samples begin */
+			__builtin_prefetch(&lattice->rgb[q][row + 2 * d.phi_d + k + 10]);
 		if (region)
 			region->cells++;
 		if (!lattice->valid[row + k] || a - b <= 0)
