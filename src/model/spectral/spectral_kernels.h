@@ -32,7 +32,7 @@ struct spectral_kernels {
 	void (*cosine_gather)(const float *rows, size_t n, float base, float *out);
 	void (*cosine_scatter)(const float *in, size_t count, size_t n, float *rows);
 
-	/* One level along one axis of n >= 2 rows of `width` values, `stride` apart, coarse rows first; scratch: 12 n. */
+	/* One level along one axis of n >= 2 rows of `width` values, `stride` apart, coarse rows first; scratch: 24 n. */
 	void (*cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch);
 
 	/*

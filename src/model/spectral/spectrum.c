@@ -29,13 +29,13 @@ uint32_t spectrum_levels(uint32_t theta_h, uint32_t theta_d)
 bp_status spectrum_create(struct lattice_dims dims, float limit, struct spectrum **out, bp_error *error)
 {
 	const size_t longest = dims.theta_h > dims.theta_d ? dims.theta_h : dims.theta_d, rows = (size_t)dims.theta_h * dims.theta_d;
-	const size_t bytes = sizeof(struct spectrum) + 12 * longest * sizeof(float) + rows * sizeof(uint16_t);
+	const size_t bytes = sizeof(struct spectrum) + 24 * longest * sizeof(float) + rows * sizeof(uint16_t);
 	struct spectrum *t = malloc(bytes);
 
 	if (!t)
 		return error_memory(error, bytes);
 	*t = (struct spectrum){.dims = dims, .levels = spectrum_levels(dims.theta_h, dims.theta_d)};
-	t->span = (uint16_t *)(t->scratch + 12 * longest);
+	t->span = (uint16_t *)(t->scratch + 24 * longest);
 	spans_find(dims, limit, t->span);
 	bp_status status = cosines_create(dims.phi_d, &t->cosines, error);
 	if (!status)

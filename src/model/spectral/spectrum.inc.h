@@ -75,24 +75,24 @@ static void KERNEL(span_unfold)(const float *sum, const float *difference, size_
 static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(float *x, size_t n, size_t stride, float *scratch)
 {
 	const size_t low = (n + 1) / 2, high = n / 2;
-	floats8 even = FLOATS8_LOAD(x), odd_a = {0}, even_b = {0},
-			odd_c = {0}; /* the last place after no step, the first, the second, the third */
+	floats_wide even = FLOATS_WIDE_LOAD(x), odd_a = {0}, even_b = {0},
+				odd_c = {0}; /* the last place after no step, the first, the second, the third */
 
 	for (size_t i = 0; i < low; i++) {
 		const float *here = x + 2 * i * stride;
-		const floats8 next = i + 1 < low ? FLOATS8_LOAD(here + 2 * stride) : even;
-		floats8 odd = odd_a;
-		__builtin_prefetch(here + 16, 1);
+		const floats_wide next = i + 1 < low ? FLOATS_WIDE_LOAD(here + 2 * stride) : even;
+		floats_wide odd = odd_a;
+		__builtin_prefetch(here + 2 * FLOATS_WIDE, 1);
 		if (2 * i + 1 < n) {
-			__builtin_prefetch(here + stride + 16, 1);
-			odd = FLOATS8_LOAD(here + stride) + CDF97_A * (even + next);
+			__builtin_prefetch(here + stride + 2 * FLOATS_WIDE, 1);
+			odd = FLOATS_WIDE_LOAD(here + stride) + CDF97_A * (even + next);
 		}
-		const floats8 b = even + CDF97_B * ((i ? odd_a : odd) + odd);
+		const floats_wide b = even + CDF97_B * ((i ? odd_a : odd) + odd);
 		if (i) {
-			const floats8 c = odd_a + CDF97_C * (even_b + b);
-			const floats8 d = even_b + CDF97_D * ((i > 1 ? odd_c : c) + c);
-			FLOATS8_STORE(x + (i - 1) * stride, d * SPECTRUM_GAIN);
-			FLOATS8_STORE(scratch + 8 * (i - 1), c * (1 / SPECTRUM_GAIN));
+			const floats_wide c = odd_a + CDF97_C * (even_b + b);
+			const floats_wide d = even_b + CDF97_D * ((i > 1 ? odd_c : c) + c);
+			FLOATS_WIDE_STORE(x + (i - 1) * stride, d * SPECTRUM_GAIN);
+			FLOATS_WIDE_STORE(scratch + FLOATS_WIDE * (i - 1), c * (1 / SPECTRUM_GAIN));
 			odd_c = c;
 		}
 		odd_a = odd;
@@ -100,30 +100,30 @@ static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(flo
 		even = next;
 	}
 	if (high == low) {
-		const floats8 c = odd_a + CDF97_C * (even_b + even_b);
-		FLOATS8_STORE(scratch + 8 * (high - 1), c * (1 / SPECTRUM_GAIN));
-		FLOATS8_STORE(x + (low - 1) * stride, (even_b + CDF97_D * ((low > 1 ? odd_c : c) + c)) * SPECTRUM_GAIN);
+		const floats_wide c = odd_a + CDF97_C * (even_b + even_b);
+		FLOATS_WIDE_STORE(scratch + FLOATS_WIDE * (high - 1), c * (1 / SPECTRUM_GAIN));
+		FLOATS_WIDE_STORE(x + (low - 1) * stride, (even_b + CDF97_D * ((low > 1 ? odd_c : c) + c)) * SPECTRUM_GAIN);
 	} else {
-		FLOATS8_STORE(x + (low - 1) * stride, (even_b + CDF97_D * (odd_c + odd_c)) * SPECTRUM_GAIN);
+		FLOATS_WIDE_STORE(x + (low - 1) * stride, (even_b + CDF97_D * (odd_c + odd_c)) * SPECTRUM_GAIN);
 	}
 	for (size_t i = 0; i < high; i++)
-		FLOATS8_STORE(x + (low + i) * stride, FLOATS8_LOAD(scratch + 8 * i));
+		FLOATS_WIDE_STORE(x + (low + i) * stride, FLOATS_WIDE_LOAD(scratch + FLOATS_WIDE * i));
 }
 
 static void KERNEL(cdf97_forward)(float *x, size_t n, size_t stride, size_t width, float *scratch)
 {
-	const size_t whole = width / 8 * 8, rest = width - whole;
+	const size_t whole = width / FLOATS_WIDE * FLOATS_WIDE, rest = width - whole;
 
-	for (size_t q = 0; q < whole; q += 8)
+	for (size_t q = 0; q < whole; q += FLOATS_WIDE)
 		KERNEL(cdf97_forward_line)(x + q, n, stride, scratch);
 	if (!rest)
 		return;
 	/* What is left of a vector is worked on elsewhere. */
-	float *line = scratch + 4 * n;
-	memset(line, 0, 8 * n * sizeof *line);
+	float *line = scratch + FLOATS_WIDE / 2 * n;
+	memset(line, 0, FLOATS_WIDE * n * sizeof *line);
 	for (size_t i = 0; i < n; i++)
-		memcpy(line + 8 * i, x + i * stride + whole, rest * sizeof *line);
-	KERNEL(cdf97_forward_line)(line, n, 8, scratch);
+		memcpy(line + FLOATS_WIDE * i, x + i * stride + whole, rest * sizeof *line);
+	KERNEL(cdf97_forward_line)(line, n, FLOATS_WIDE, scratch);
 	for (size_t i = 0; i < n; i++)
-		memcpy(x + i * stride + whole, line + 8 * i, rest * sizeof *line);
+		memcpy(x + i * stride + whole, line + FLOATS_WIDE * i, rest * sizeof *line);
 }
