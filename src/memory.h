@@ -5,6 +5,7 @@
 #define MEMORY_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "brdfpack.h"
 
@@ -13,6 +14,9 @@
  * of 9,000, and walking through it fewer misses. A hint: failure changes nothing but speed.
  */
 void memory_prefer_huge(void *block, size_t bytes);
+
+/* Asks for what lies `bytes` bytes after p, or before it: an address, since nothing need be there. */
+#define memory_ask(p, bytes) __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(ptrdiff_t)(bytes)))
 
 /*
  * malloc for tables that are soon freed: aligned to a cache line, huge pages asked for where it holds some. For free(). Not

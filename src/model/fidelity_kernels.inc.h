@@ -2,6 +2,7 @@
 #include <stdbool.h>
 
 #include "fidelity_kernels.h"
+#include "memory.h"
 #include "model/math/fast_math.h"
 #include "model/math/vector.h"
 
@@ -207,10 +208,10 @@ static void KERNEL(fidelity_slice)(const double *b, const uint8_t *valid, const 
 		KERNEL(fidelity_hide)(hidden + start, m, &block);
 		/* Four blocks on: more streams at once than a processor foresees. */
 		for (size_t l = 0; l < FIDELITY_BLOCK; l += 16) {
-			__builtin_prefetch(b + start + 4 * FIDELITY_BLOCK + l);
-			__builtin_prefetch(b + start + 4 * FIDELITY_BLOCK + l + 8);
+			memory_ask(b + start, (4 * FIDELITY_BLOCK + l) * sizeof *b);
+			memory_ask(b + start, (4 * FIDELITY_BLOCK + l + 8) * sizeof *b);
 			for (size_t k = 0; k < count; k++)
-				__builtin_prefetch(tables[k].e + start + 4 * FIDELITY_BLOCK + l);
+				memory_ask(tables[k].e + start, (4 * FIDELITY_BLOCK + l) * sizeof *tables[k].e);
 		}
 		for (size_t k = 0; k < count; k++)
 			KERNEL(fidelity_add)(&block, tables[k].e + start, m, tables[k].unit, tables[k].sums);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
 #include "spectral.h"
 #include "model/robust/robust.h"
 #include "model/math/select.h"
@@ -46,7 +47,7 @@ bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_su
 		if (at == last)
 			continue;
 		for (int c = 0; c < 3; c++) {
-			__builtin_prefetch(&lattice->rgb[c][at + 8 * every]);
+			memory_ask(lattice->rgb[c] + at, 8 * every * sizeof(double));
 			y[c][n] = lattice->rgb[c][at];
 		}
 		out->x[n] = y[0][n] / 3 + y[1][n] / 3 + y[2][n] / 3;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "memory.h"
 #include "model/math/fast_math.h"
 #include "spectral_kernels.h"
 
@@ -56,7 +57,7 @@ static void row_survey(const struct survey *s, uint32_t i, uint32_t j)
 	for (uint32_t k = (3 * i + 5 * j) % every; k < d.phi_d; k += every) {
 		const double a = c->cos_d[j] * c->cos_h[i], b = c->sin_d[j] * c->sin_h[i] * fabs(c->cos_p[k]);
 		for (int q = 0; q < 3; q++) /* a cell of the row after next: no processor foresees where a row's samples begin */
-			__builtin_prefetch(&lattice->rgb[q][row + 2 * d.phi_d + k + 10]);
+			memory_ask(lattice->rgb[q] + row + k, (2 * d.phi_d + 10) * sizeof(double));
 		if (region)
 			region->cells++;
 		if (!lattice->valid[row + k] || a - b <= 0)

@@ -164,8 +164,8 @@ void spectrum_rows_cells(struct spectrum_rows *t, int field, uint32_t first, uin
 	for (uint32_t n = 0; n < lanes->planes; n++) {
 		const float *from = lanes->value + n * plane + (size_t)first * SPECTRUM_BLOCK;
 		for (uint32_t r = 0; r < count; r++, from += SPECTRUM_BLOCK) {
-			/* So many planes at once no processor foresees. An address, since there may be no such row. */
-			__builtin_prefetch((const void *)((uintptr_t)from + sizeof *from * SPAN_ROWS * SPECTRUM_BLOCK));
+			/* So many planes at once no processor foresees. */
+			memory_ask(from, sizeof *from * SPAN_ROWS * SPECTRUM_BLOCK);
 			memcpy(t->lanes + r * width + n * SPECTRUM_BLOCK, from, SPECTRUM_BLOCK * sizeof *from);
 		}
 	}
