@@ -13,14 +13,18 @@ enum { LANES = 16 };
 static const float LEAST = 0.45f;           /* of a step: what may become 1 in the second quantiser */
 static const float CANDIDATES_FROM = 0.85f; /* of the least coefficient that may have a level */
 
-/* Is any |coefficient| at least the least that does not become 0? Compared as integers, which vectorises. */
-static ALWAYS_INLINE int any_above(const float *x, uint32_t least_bits)
+typedef int32_t sizes8 __attribute__((vector_size(LANES / 2 * sizeof(int32_t))));
+
+/* Is any |coefficient| at least the least that does not become 0? Compared as integers, which are in the same order. */
+static ALWAYS_INLINE bool any_above(const float *x, int32_t least_bits)
 {
-	uint32_t any = 0, bits[LANES];
-	memcpy(bits, x, sizeof bits);
-	for (int q = 0; q < LANES; q++)
-		any |= (uint32_t)((int32_t)(bits[q] & 0x7fffffff) >= (int32_t)least_bits);
-	return any != 0;
+	sizes8 low, high;
+	uint64_t any[4];
+	memcpy(&low, x, sizeof low);
+	memcpy(&high, x + LANES / 2, sizeof high);
+	low = ((low & 0x7fffffff) >= least_bits) | ((high & 0x7fffffff) >= least_bits);
+	memcpy(any, &low, sizeof any);
+	return ((any[0] | any[1]) | (any[2] | any[3])) != 0;
 }
 
 static bp_status candidate_add(struct planes *p, uint32_t slot, uint32_t place, float coefficient, bp_error *error)
@@ -63,7 +67,7 @@ AVX2_CLONE static bp_status candidates_find(struct planes *p, float *const coeff
 						f * field + 2 * p->bands.blocks + band->block_at + y / BLOCK_EDGE * band->block_stride + x / BLOCK_EDGE;
 					const uint32_t place = y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE;
 					for (uint32_t lane = 0; lane < lanes && !status; lane += LANES)
-						if (lanes - lane < LANES || any_above(row + lane, bits_of_float(least)))
+						if (lanes - lane < LANES || any_above(row + lane, (int32_t)bits_of_float(least)))
 							status = lanes_look(p, slot, place, row + lane, lane, lanes - lane < LANES ? lanes - lane : LANES,
 							                    least, error);
 				}
