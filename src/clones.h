@@ -1,11 +1,11 @@
 /*
- * clones.h: static functions that are compiled for AVX2 besides, one of which the loader chooses.
+ * clones.h: how a function is compiled: inlined whatever its size, or for AVX2 besides, one of both being chosen by the loader.
  *
- * For loops that the compiler turns into vectors, and that no table of model/math/kernels.h holds. Both give the same bits: as
- * everywhere, no multiplication and addition are fused, and no sum of floats is reordered. What such a function calls has to be
- * inlined into it (ALWAYS_INLINE), or is compiled once. Static, since the loader sees others whatever their visibility. Only
- * where the loader is known to do it: gcc and glibc on x86-64; not in a sanitizer's build, whose memory is not ready when the
- * loader asks.
+ * AVX2_CLONE is for loops that the compiler turns into vectors, and that no table of model/math/kernels.h holds. Both give the
+ * same bits: as everywhere, no multiplication and addition are fused, and no sum of floats is reordered. What such a function
+ * calls has to be inlined into it, or is compiled once. It is static, since the loader sees others whatever their visibility.
+ * Only where the loader is known to do it: gcc and glibc on x86-64; not in a sanitizer's build, whose memory is not ready when
+ * the loader asks.
  */
 #ifndef CLONES_H
 #define CLONES_H

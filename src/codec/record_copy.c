@@ -45,6 +45,6 @@ bp_status record_rename(const uint8_t *record, size_t count, const char *name, u
 {
 	const char *fault = name_fault(name, strlen(name));
 	if (fault)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);
+		return error_argument(error, "\"%.255s\" is not a legal name: %s", name, fault);
 	return record_copy(record, count, 0, name, out, out_bytes, error);
 }

@@ -225,9 +225,9 @@ bp_status record_encode(const struct lattice *lattice, const char *name, const s
 	const char *fault = name_fault(name, name_bytes);
 
 	if (!packing.encode)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "profile %d is not known", (int)options->profile);
+		return error_argument(error, "profile %d is not known", (int)options->profile);
 	if (fault)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%.255s\" is not a legal name: %s", name, fault);
+		return error_argument(error, "\"%.255s\" is not a legal name: %s", name, fault);
 	bp_status status = model_fit(lattice, options, &model, error);
 	if (status)
 		return status;

@@ -45,7 +45,7 @@ static bp_status head_lay_out(struct record_head *head, const struct section_lis
 		if (sections->bytes[i].failed)
 			return error_memory(error, sections->bytes[i].count);
 		if (entry->layer >= head->layer_count || (i && entry->layer < head->sections[i - 1].layer))
-			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "section %u has layer %u, out of order", i, entry->layer);
+			return error_argument(error, "section %u has layer %u, out of order", i, entry->layer);
 		if (sections->bytes[i].count == 0 || sections->bytes[i].count > RECORD_BYTES_MAX - at)
 			return error_set(error, BP_ERROR_LIMIT, BP_NO_OFFSET, "section %u has %zu bytes; a record has at most %d", i,
 			                 sections->bytes[i].count, RECORD_BYTES_MAX);
@@ -66,10 +66,10 @@ bp_status sections_join(struct record_head *head, const struct section_list *sec
 	struct byte_buffer out = {0};
 	const char *fault = name_fault(head->name, strlen(head->name));
 	if (fault)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "\"%s\" is not a legal name: %s", head->name, fault);
+		return error_argument(error, "\"%s\" is not a legal name: %s", head->name, fault);
 	if (!lattice_dims_legal(head->dims) || head->layer_count < 1 || head->layer_count > LAYERS_MAX)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a record of %ux%ux%u cells and %u layers cannot be written",
-		                 head->dims.theta_h, head->dims.theta_d, head->dims.phi_d, head->layer_count);
+		return error_argument(error, "a record of %ux%ux%u cells and %u layers cannot be written", head->dims.theta_h,
+		                      head->dims.theta_d, head->dims.phi_d, head->layer_count);
 	bp_status status = head_lay_out(head, sections, error);
 	if (status)
 		return status;

@@ -267,7 +267,7 @@ bp_status container_seek(struct container *container, uint32_t ordinal, bp_error
 	bp_status status = BP_OK;
 	bool more = container->current;
 	if (!container_ahead(container, ordinal))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "member %u lies behind", ordinal);
+		return error_argument(error, "member %u lies behind", ordinal);
 	const locale_t before = locale_enter(container);
 	while (container->next <= ordinal && !container->finished)
 		status = entry_next(container, &more, error); /* one bad entry on the way does not bar the others */

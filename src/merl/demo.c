@@ -196,7 +196,7 @@ static void out_of_reach(const struct demo_material *m, struct lattice_dims dims
 bp_status demo_generate(size_t index, struct lattice_dims dims, bool clean, struct lattice *out, bp_error *error)
 {
 	if (index >= demo_count())
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "demo material %zu: there are %zu", index, demo_count());
+		return error_argument(error, "demo material %zu: there are %zu", index, demo_count());
 	const struct demo_material *m = &MATERIALS[index];
 	struct lattice lattice;
 	bp_status status = lattice_alloc(dims, &lattice, error);

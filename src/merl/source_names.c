@@ -61,8 +61,7 @@ bp_status source_name_claim(void **names, const char *name, const char *path, co
 		claim_free(claim);
 	if (!holder)
 		return error_memory(error, sizeof *claim);
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-	                 "two materials named %s: %.300s has the name; rename or leave out one", name, (*holder)->where);
+	return error_argument(error, "two materials named %s: %.300s has the name; rename or leave out one", name, (*holder)->where);
 }
 
 void source_names_free(void *names) { tdestroy(names, claim_free); }

@@ -38,10 +38,10 @@ bp_status fidelity_measure(const struct lattice *truth, const struct expansion *
 	size_t unseen_count = 0;
 
 	if (count > LAYERS_MAX)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: %u tables; %d at most", count, LAYERS_MAX);
+		return error_argument(error, "fidelity: %u tables; %d at most", count, LAYERS_MAX);
 	for (uint32_t t = 0; t < count; t++)
 		if (!lattice_dims_equal(dims, tables[t].dims))
-			return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "fidelity: the two tables have different extents");
+			return error_argument(error, "fidelity: the two tables have different extents");
 	if (!truth->valid_count)
 		return error_set(error, BP_ERROR_BAD_INPUT, BP_NO_OFFSET, "fidelity: no valid cell to compare");
 	const size_t slice = (size_t)dims.theta_d * dims.phi_d, cells = lattice_cells(dims);

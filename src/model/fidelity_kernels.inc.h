@@ -78,9 +78,8 @@ static inline void KERNEL(fidelity_prepare)(const double *b, const uint8_t *vali
  *
  * Both are polynomials of least relative error on these ranges: 1e-15, 2e-15.
  */
-static inline
-	__attribute__((always_inline)) void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *difference,
-                                                               bool any_hidden, struct KERNEL(fidelity_squares) *to)
+static ALWAYS_INLINE void KERNEL(fidelity_close)(struct KERNEL(fidelity_block) *t, const double *difference, bool any_hidden,
+                                                 struct KERNEL(fidelity_squares) *to)
 {
 	lanes4 logs = {0, 0, 0, 0}, cubes = {0, 0, 0, 0}, hidden = {0, 0, 0, 0};
 

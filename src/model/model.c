@@ -56,8 +56,8 @@ static bp_status expansion_ready(struct lattice_dims dims, struct expansion *out
 		return expansion_alloc(dims, out, error);
 	if (lattice_dims_equal(dims, out->dims))
 		return BP_OK;
-	return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the table has %u x %u x %u cells, the model %u x %u x %u",
-	                 out->dims.theta_h, out->dims.theta_d, out->dims.phi_d, dims.theta_h, dims.theta_d, dims.phi_d);
+	return error_argument(error, "the table has %u x %u x %u cells, the model %u x %u x %u", out->dims.theta_h, out->dims.theta_d,
+	                      out->dims.phi_d, dims.theta_h, dims.theta_d, dims.phi_d);
 }
 
 bp_status model_expand(const struct model *model, uint32_t layers, struct expansion *out, bp_error *error)
@@ -102,8 +102,8 @@ bp_status model_expand_half(const struct model *model, struct expansion *out, bp
 	struct expansion whole = {0};
 
 	if (!model_has_half(model->dims, &half))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "%u x %u x %u cells have no halves", model->dims.theta_h,
-		                 model->dims.theta_d, model->dims.phi_d);
+		return error_argument(error, "%u x %u x %u cells have no halves", model->dims.theta_h, model->dims.theta_d,
+		                      model->dims.phi_d);
 	bp_status status = expansion_ready(half, out, error);
 	if (status)
 		return status;

@@ -5,6 +5,7 @@
 #include "merl/source_kind.h"
 #include "merl/spelling.h"
 #include "name.h"
+#include "render/comparison.h"
 #include "report.h"
 
 #include <stdio.h>

@@ -10,7 +10,6 @@
 
 #include "archive/reader.h"
 #include "command.h"
-#include "render/comparison.h"
 
 /*
  * A material's name as people write it, as it is or as the measured file's, NAME.binary, FOLDER/NAME.binary: without path and
@@ -53,6 +52,7 @@ bp_status selection_entry(struct selection *selection, uint64_t n, struct index_
  */
 bool selection_head(struct selection *selection, uint64_t n, struct index_entry *entry, struct record_head *head);
 
+struct comparison_plans; /* render/comparison.h */
 /* Plans for the first material whose head can be read, before a fork, so that the workers share their memory. */
 bp_status selection_plans_make(struct selection *selection, struct comparison_plans *plans, bp_error *error);
 

@@ -7,12 +7,11 @@
 
 #include <string.h>
 
+#include "clones.h"
 #include "planes.h"
 
-#define INLINE inline __attribute__((always_inline))
-
 /* 0: zero, 1: less than one and a half times the plane's value, 2: more. */
-static INLINE uint32_t tier(uint32_t near) { return (uint32_t)(near != 0) + (uint32_t)(near >= 6); }
+static ALWAYS_INLINE uint32_t tier(uint32_t near) { return (uint32_t)(near != 0) + (uint32_t)(near >= 6); }
 
 /*
  * One row of a block in units of the plane's value. Comparisons are signed, as every processor has them; no value needs the sign.
@@ -20,7 +19,7 @@ static INLINE uint32_t tier(uint32_t near) { return (uint32_t)(near != 0) + (uin
 typedef uint16_t cells8 __attribute__((vector_size(2 * BLOCK_EDGE)));
 typedef int16_t signed8 __attribute__((vector_size(2 * BLOCK_EDGE)));
 
-static INLINE cells8 cells_load(const uint16_t *from)
+static ALWAYS_INLINE cells8 cells_load(const uint16_t *from)
 {
 	cells8 v;
 	memcpy(&v, from, sizeof v);
@@ -56,7 +55,7 @@ struct row_view {
 };
 
 /* 0: none of the row's cells, and nothing around them, is known to differ from 0; then *out is not set. */
-static INLINE int row_look(const struct block_view *v, uint32_t y, uint32_t width, uint32_t chroma, struct row_view *out)
+static ALWAYS_INLINE int row_look(const struct block_view *v, uint32_t y, uint32_t width, uint32_t chroma, struct row_view *out)
 {
 	const uint16_t *k = &v->near[y + 1][1];
 	const uint32_t at = y * BLOCK_EDGE;

@@ -9,12 +9,12 @@
 
 #include "planes_row.h"
 
-static INLINE uint32_t size_of(const struct plane_contexts *c, uint32_t v)
+static ALWAYS_INLINE uint32_t size_of(const struct plane_contexts *c, uint32_t v)
 {
 	return c->size[v < SIZE_TABLE ? v : SIZE_TABLE - 1];
 }
 
-static INLINE uint32_t harmonic_class(uint32_t m)
+static ALWAYS_INLINE uint32_t harmonic_class(uint32_t m)
 {
 	return m < 2 ? m : m < 4 ? 2 : m < 8 ? 3 : m < 16 ? 4 : m < 32 ? 5 : m < 64 ? 6 : 7;
 }
@@ -36,7 +36,7 @@ struct place {
 	uint32_t first_bands, second_bands;
 };
 
-static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_t b, uint32_t bit)
+static ALWAYS_INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_t b, uint32_t bit)
 {
 	struct plane_contexts *c = u->contexts;
 	const uint32_t *bands = u->bands;
@@ -56,7 +56,7 @@ static INLINE uint32_t code_band_flag(const struct place *u, int decode, uint32_
  * The flags of a harmonic with no active band, in it or near it, up to the first that is 1: its band, or their count. Most units
  * hold nothing else.
  */
-static INLINE uint32_t code_quiet_bands(const struct place *u, int decode, const uint8_t *top)
+static ALWAYS_INLINE uint32_t code_quiet_bands(const struct place *u, int decode, const uint8_t *top)
 {
 	const struct bands *bands = &u->planes->bands;
 	mixer_context *context = &u->contexts->quiet.band[u->harmonic_class * 2 + u->chroma], state = *context;
@@ -74,8 +74,8 @@ static INLINE uint32_t code_quiet_bands(const struct place *u, int decode, const
 }
 
 /* `above`: the active blocks of the row of parents; NULL in band 0. */
-static INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32_t b, uint32_t x, size_t at, const uint8_t *above,
-                                       uint32_t bit)
+static ALWAYS_INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32_t b, uint32_t x, size_t at,
+                                              const uint8_t *above, uint32_t bit)
 {
 	struct plane_contexts *c = u->contexts;
 	const struct band *band = &u->planes->bands.band[b];
@@ -98,7 +98,7 @@ static INLINE uint32_t code_block_flag(const struct place *u, int decode, uint32
 }
 
 /* The active blocks among the parents of a band's row y of blocks. */
-static INLINE const uint8_t *parents_active(const struct place *u, const struct band *band, uint32_t y)
+static ALWAYS_INLINE const uint8_t *parents_active(const struct place *u, const struct band *band, uint32_t y)
 {
 	if (band->parent < 0)
 		return NULL;
@@ -107,8 +107,8 @@ static INLINE const uint8_t *parents_active(const struct place *u, const struct 
 	return u->active + above->block_at + (size_t)(py < last ? py : last) * above->block_stride;
 }
 
-static INLINE void block_gather(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at,
-                                struct block_view *v)
+static ALWAYS_INLINE void block_gather(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at,
+                                       struct block_view *v)
 {
 	const struct planes *p = u->planes;
 	const struct band *band = &p->bands.band[b];
@@ -161,7 +161,7 @@ static INLINE void block_gather(const struct place *u, int decode, uint32_t b, u
 	v->level = decode ? NULL : p->levels[p->level_slot[u->field][(size_t)(u->harmonic + 2) * p->bands.blocks + at]].level;
 }
 
-static INLINE void block_scatter(const struct block_view *v, struct plane_block *own)
+static ALWAYS_INLINE void block_scatter(const struct block_view *v, struct plane_block *own)
 {
 	for (uint32_t y = 0; y < BLOCK_EDGE; y++) {
 		memcpy(own->near + y * BLOCK_EDGE, &v->near[y + 1][1], BLOCK_EDGE * sizeof(uint16_t));
@@ -169,8 +169,8 @@ static INLINE void block_scatter(const struct block_view *v, struct plane_block 
 	}
 }
 
-static INLINE uint32_t code_sign(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t x,
-                                 uint32_t bit)
+static ALWAYS_INLINE uint32_t code_sign(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t x,
+                                        uint32_t bit)
 {
 	struct plane_contexts *c = u->contexts;
 	const uint8_t *s = &v->sign[y + 1][x + 1];
@@ -184,19 +184,19 @@ static INLINE uint32_t code_sign(const struct place *u, int decode, const struct
 	return mixed_bit(u->coder, decode, context, &c->sign_weights[u->chroma], bit);
 }
 
-static INLINE uint32_t quiet_index(const struct place *u, uint32_t b, uint32_t fresh)
+static ALWAYS_INLINE uint32_t quiet_index(const struct place *u, uint32_t b, uint32_t fresh)
 {
 	return (((u->harmonic_class * BANDS_MAX + b) * 3 + u->depth) * 2 + u->chroma) * 2 + fresh;
 }
 
 /* This plane's bit of cell (y, x) and those above; encoder only. */
-static INLINE uint32_t level_above(const struct place *u, const struct block_view *v, uint32_t y, uint32_t x)
+static ALWAYS_INLINE uint32_t level_above(const struct place *u, const struct block_view *v, uint32_t y, uint32_t x)
 {
 	return (uint32_t)abs(v->level[y * BLOCK_EDGE + x]) >> u->plane;
 }
 
 /* The cell's level is not 0 from this plane on. */
-static INLINE void cell_begin(const struct place *u, int decode, struct block_view *v, uint32_t y, uint32_t x)
+static ALWAYS_INLINE void cell_begin(const struct place *u, int decode, struct block_view *v, uint32_t y, uint32_t x)
 {
 	const uint32_t half = u->plane ? 2 : 0;
 	v->sign[y + 1][x + 1] = (uint8_t)(1 + code_sign(u, decode, v, y, x, !decode && v->level[y * BLOCK_EDGE + x] < 0));
@@ -205,8 +205,8 @@ static INLINE void cell_begin(const struct place *u, int decode, struct block_vi
 }
 
 /* One level's bit of this plane; `around` as it is now. */
-static INLINE void code_cell(const struct place *u, int decode, struct block_view *v, const struct row_view *row, uint32_t y,
-                             uint32_t x, uint32_t around, uint32_t fresh)
+static ALWAYS_INLINE void code_cell(const struct place *u, int decode, struct block_view *v, const struct row_view *row,
+                                    uint32_t y, uint32_t x, uint32_t around, uint32_t fresh)
 {
 	struct plane_contexts *c = u->contexts;
 	const uint32_t plane = u->plane, b = v->band, along = row->along[x];
@@ -239,8 +239,8 @@ static INLINE void code_cell(const struct place *u, int decode, struct block_vie
  * A row with nothing around it: one bit tells whether all of it stays 0, else where the first one is that does not. Returns
  * that one's place, or the width.
  */
-static INLINE uint32_t code_quiet_row(const struct place *u, int decode, const struct block_view *v, uint32_t y, uint32_t width,
-                                      uint32_t fresh)
+static ALWAYS_INLINE uint32_t code_quiet_row(const struct place *u, int decode, const struct block_view *v, uint32_t y,
+                                             uint32_t width, uint32_t fresh)
 {
 	struct plane_contexts *c = u->contexts;
 	uint32_t place = 0;
@@ -255,7 +255,8 @@ static INLINE uint32_t code_quiet_row(const struct place *u, int decode, const s
 	return width - 1;
 }
 
-static INLINE void code_row(const struct place *u, int decode, struct block_view *v, uint32_t y, uint32_t width, uint32_t fresh)
+static ALWAYS_INLINE void code_row(const struct place *u, int decode, struct block_view *v, uint32_t y, uint32_t width,
+                                   uint32_t fresh)
 {
 	struct row_view row;
 	uint32_t start = 0, change = 0; /* twice what has been added to the left neighbour since the look */
@@ -277,7 +278,8 @@ static INLINE void code_row(const struct place *u, int decode, struct block_view
 	}
 }
 
-static INLINE void code_block(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at, uint32_t fresh)
+static ALWAYS_INLINE void code_block(const struct place *u, int decode, uint32_t b, uint32_t by, uint32_t bx, size_t at,
+                                     uint32_t fresh)
 {
 	const struct band *band = &u->planes->bands.band[b];
 	const uint32_t x = bx * BLOCK_EDGE, y = by * BLOCK_EDGE;
@@ -291,7 +293,7 @@ static INLINE void code_block(const struct place *u, int decode, uint32_t b, uin
 	block_scatter(&view, &u->planes->pool[u->slot[at]]);
 }
 
-static INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32_t unit, int decode)
+static ALWAYS_INLINE void unit_code(struct planes *p, struct mixed_coder *coder, uint32_t unit, int decode)
 {
 	const uint32_t harmonics = p->dims.phi_d, field = unit / harmonics % 3, harmonic = unit % harmonics;
 	const uint32_t plane = p->planes - 1 - unit / (3 * harmonics);

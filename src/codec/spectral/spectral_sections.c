@@ -110,8 +110,7 @@ bp_status spectral_encode(const struct model *model, const struct encode_request
 	bp_status status;
 
 	if (!e.model->coefficient[0])
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET,
-		                 "a decoded model cannot be encoded again: its coefficients are gone");
+		return error_argument(error, "a decoded model cannot be encoded again: its coefficients are gone");
 	for (int i = 0; i < PREVIEW_COUNT && PREVIEWS[i] + PREVIEWS[i] / 4 < budget; i++)
 		e.limit[e.layers++] = PREVIEWS[i];
 	e.limit[e.layers++] = budget;

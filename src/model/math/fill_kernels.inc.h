@@ -10,8 +10,7 @@ typedef int16_t KERNEL(words8) __attribute__((vector_size(16)));
 typedef uint8_t KERNEL(bytes8) __attribute__((vector_size(8)));
 
 /* Of eight pairs of cells from p on: the sums of those that are valid; and in *count how many. */
-static inline __attribute__((always_inline)) void KERNEL(pairs_sum)(const float *p, const uint8_t *valid, floats8 *sum,
-                                                                    KERNEL(words8) *count)
+static ALWAYS_INLINE void KERNEL(pairs_sum)(const float *p, const uint8_t *valid, floats8 *sum, KERNEL(words8) *count)
 {
 	typedef KERNEL(ints8) ints;
 	KERNEL(pairs8) pair; /* the even cell's mark in its lower half: little-endian, as all of the writing half */

@@ -10,6 +10,8 @@
 
 #include <stdint.h>
 
+#include "clones.h"
+
 typedef double lanes4 __attribute__((vector_size(32)));
 typedef int64_t mask4 __attribute__((vector_size(32)));
 typedef double lanes4_unaligned __attribute__((vector_size(32), aligned(8), may_alias));

@@ -189,7 +189,7 @@ bp_status robust_fit(const double *x, const double *y, size_t n, struct colour_f
 	struct design design;
 
 	if (!n)
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "robust regression: no observation");
+		return error_argument(error, "robust regression: no observation");
 	bp_status status = design_alloc(n, &design, error);
 	if (!status) {
 		memcpy(design.x, x, n * sizeof *x);

@@ -9,8 +9,7 @@ struct KERNEL(anchor_block) {
 };
 
 /* Adds v r^p for p < count, and multiplies v by t. */
-static inline
-	__attribute__((always_inline)) void KERNEL(anchor_powers)(lanes4 *v, const lanes4 *t, const lanes4 *r, int count, lanes4 *sum)
+static ALWAYS_INLINE void KERNEL(anchor_powers)(lanes4 *v, const lanes4 *t, const lanes4 *r, int count, lanes4 *sum)
 {
 	lanes4 u = *v;
 	for (int p = 0; p < count; p++, u *= *r)
@@ -22,9 +21,8 @@ static inline
  * Sums of weight r^p t^i over a block, for i = i0, i0 + 1, i0 + 2 and p below the count of each. Counts are constants, at most 12
  * in all at a time, so that the sums stay in registers.
  */
-static inline
-	__attribute__((always_inline)) void KERNEL(anchor_sweep)(const struct KERNEL(anchor_block) *b, const double *weight, int i0,
-                                                             int count0, int count1, int count2, double (*sum)[ANCHOR_T])
+static ALWAYS_INLINE void KERNEL(anchor_sweep)(const struct KERNEL(anchor_block) *b, const double *weight, int i0, int count0,
+                                               int count1, int count2, double (*sum)[ANCHOR_T])
 {
 	lanes4 s[3][6] = {{{0}}};
 	for (size_t n = 0; n < ANCHOR_BLOCK; n += 4) {

@@ -6,9 +6,8 @@ enum { ROBUST_BLOCK = 512, ROBUST_GROUP = 16 };
  * Either pass is compiled twice: with the line's rest, which few samples need, and without. The argument `rested` is known at
  * each of its calls.
  */
-static inline __attribute__((always_inline))
-size_t KERNEL(scale_pass)(const struct robust_sample *sample, const struct robust_line *line, double low, double high,
-                          double *inside, size_t *below, bool rested)
+static ALWAYS_INLINE size_t KERNEL(scale_pass)(const struct robust_sample *sample, const struct robust_line *line, double low,
+                                               double high, double *inside, size_t *below, bool rested)
 {
 	const double *x = sample->x, *y = sample->y;
 	const double *excess = sample->excess;
@@ -71,9 +70,8 @@ static inline void KERNEL(add)(double *sum, double *rest, double x)
 	*sum = t;
 }
 
-static inline
-	__attribute__((always_inline)) void KERNEL(sums_pass)(const struct robust_sample *sample, const struct robust_line *line,
-                                                          double inverse_scale, struct robust_sums *out, bool rested)
+static ALWAYS_INLINE void KERNEL(sums_pass)(const struct robust_sample *sample, const struct robust_line *line,
+                                            double inverse_scale, struct robust_sums *out, bool rested)
 {
 	const lanes4 c = LANES_ALL(line->centre_y), xo = LANES_ALL(line->centre_x), b = LANES_ALL(line->slope);
 	const lanes4 scale = LANES_ALL(inverse_scale), one = LANES_ALL(1), zero = LANES_ALL(0), rest_y = LANES_ALL(line->rest_y);

@@ -41,8 +41,7 @@ static void KERNEL(cosine_join)(const float *a, const float *b, size_t n, float 
 }
 
 /* Eight rows of eight, from_stride apart, become eight columns, to_stride apart. */
-static inline __attribute__((always_inline)) void KERNEL(transpose8)(const float *from, size_t from_stride, float base, float *to,
-                                                                     size_t to_stride)
+static ALWAYS_INLINE void KERNEL(transpose8)(const float *from, size_t from_stride, float base, float *to, size_t to_stride)
 {
 	floats8 r[8], s[8];
 	for (size_t i = 0; i < 8; i++)

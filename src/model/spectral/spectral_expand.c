@@ -162,7 +162,7 @@ static bp_status expand(const struct spectral_model *model, uint32_t layers, boo
 	struct terms terms = {0};
 
 	if (model->coefficient[0])
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "a model that was fitted has no levels; its record has");
+		return error_argument(error, "a model that was fitted has no levels; its record has");
 	float *fields = calloc(3 * piece, sizeof *fields);
 	bp_status status =
 		fields ? spectral_inverse_create(d, &model->weights, &inverse, error) : error_memory(error, 3 * piece * sizeof *fields);

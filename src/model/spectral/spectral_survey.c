@@ -47,7 +47,7 @@ bp_status spectral_survey_draw(const struct lattice *lattice, struct spectral_su
 		if (at == last)
 			continue;
 		for (int c = 0; c < 3; c++) {
-			memory_ask(lattice->rgb[c] + at, 8 * every * sizeof(double));
+			memory_ask(lattice->rgb[c] + at, 8 * every * sizeof(double)); /* eight samples on */
 			y[c][n] = lattice->rgb[c][at];
 		}
 		out->x[n] = y[0][n] / 3 + y[1][n] / 3 + y[2][n] / 3;

@@ -65,9 +65,8 @@ static void KERNEL(spectral_moments)(const float *const x[3], size_t n, double s
  * n cells of one channel. The limits are those of the numbers as integers, which is the same for positive ones and takes half the
  * instructions; negative ones become 0. No field is NaN: coefficients are within 2^98, their sums far within the range of float.
  */
-static inline
-	__attribute__((always_inline)) void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
-                                                               const float rotation[3], float most, float *restrict out)
+static ALWAYS_INLINE void KERNEL(channel_values)(const float *const field[3], size_t at, size_t n, float base,
+                                                 const float rotation[3], float most, float *restrict out)
 {
 	const float *a = field[0] + at, *b = field[1] + at, *d = field[2] + at;
 	const int32_t limit = (int32_t)bits_of_float(most);
@@ -91,7 +90,7 @@ static void KERNEL(spectral_values)(const float *const field[3], size_t width, c
 typedef uint16_t KERNEL(codes8) __attribute__((vector_size(16)));
 
 /* 16 values as codes in units of 2^39. */
-static inline __attribute__((always_inline)) void KERNEL(channel_codes)(const float *value, uint16_t *restrict out)
+static ALWAYS_INLINE void KERNEL(channel_codes)(const float *value, uint16_t *restrict out)
 {
 	for (int k = 0; k < 16; k++) {
 		int32_t code = (int32_t)((bits_of_float(value[k]) + 0x1000) >> 13) - ((127 + 39 - 63) << 10);
@@ -101,7 +100,7 @@ static inline __attribute__((always_inline)) void KERNEL(channel_codes)(const fl
 }
 
 /* Eight cells' R, G and B side by side. */
-static inline __attribute__((always_inline)) void KERNEL(codes_interleave)(const uint16_t *rgb, size_t channel, uint16_t *out)
+static ALWAYS_INLINE void KERNEL(codes_interleave)(const uint16_t *rgb, size_t channel, uint16_t *out)
 {
 	KERNEL(codes8) r, g, b, first, second, third;
 	memcpy(&r, rgb, sizeof r);

@@ -7,9 +7,8 @@
  * `rows` rows times `width` columns, both constants where this is inlined, and their product at most eight vectors: the sums stay
  * in registers. The sum over k runs in ascending order.
  */
-static inline __attribute__((always_inline)) void KERNEL(product_part)(const float *x, size_t in_stride, size_t rows,
-                                                                       size_t count, const float *matrix, size_t columns,
-                                                                       size_t width, float *y, size_t out_stride)
+static ALWAYS_INLINE void KERNEL(product_part)(const float *x, size_t in_stride, size_t rows, size_t count, const float *matrix,
+                                               size_t columns, size_t width, float *y, size_t out_stride)
 {
 	const size_t vectors = width / FLOATS_WIDE;
 	floats_wide sum[8] = {{0}};
@@ -72,7 +71,7 @@ static void KERNEL(span_unfold)(const float *sum, const float *difference, size_
  * before; x[-1] is x[1], x[n] is x[n - 2]. Low coefficients go where their line has been read, high ones to scratch and then
  * behind them.
  */
-static inline __attribute__((always_inline)) void KERNEL(cdf97_forward_line)(float *x, size_t n, size_t stride, float *scratch)
+static ALWAYS_INLINE void KERNEL(cdf97_forward_line)(float *x, size_t n, size_t stride, float *scratch)
 {
 	const size_t low = (n + 1) / 2, high = n / 2;
 	floats_wide even = FLOATS_WIDE_LOAD(x), odd_a = {0}, even_b = {0},

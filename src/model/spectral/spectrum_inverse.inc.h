@@ -5,7 +5,7 @@
  * One inverse step along a line of n >= 3 vectors, `stride` floats apart, the gains being in them: the four lifting steps in one
  * pass, each two places behind the one before. `half`: only x[0], x[2], ... are wanted.
  */
-static inline __attribute__((always_inline)) void KERNEL(cdf97_line)(float *x, size_t n, size_t stride, int half)
+static ALWAYS_INLINE void KERNEL(cdf97_line)(float *x, size_t n, size_t stride, int half)
 {
 	/* After the first step: even1; the second: odd2; the third: even3, all of the last place that has it. */
 	floats_wide odd = FLOATS_WIDE_LOAD(x + stride), even1 = FLOATS_WIDE_LOAD(x) - CDF97_D * (odd + odd);

@@ -2,6 +2,7 @@
  * locate.inc.h: what the kernels of both memory forms share: pairs of directions -> where to look.
  * The including file defines KERNEL(name); include once per file.
  */
+#include "clones.h"
 #include "table_parts.h"
 
 /* One look-up of many: four rows of phi_d in memory, and the weights. */
@@ -72,8 +73,8 @@ struct components {
 };
 
 /* The points of n usable pairs; where `unit`, they are unit vectors already. */
-__attribute__((always_inline)) static inline void KERNEL(points)(const struct table *t, size_t n, bool unit, struct components i,
-                                                                 struct components o, struct lookups *restrict to)
+static ALWAYS_INLINE void KERNEL(points)(const struct table *t, size_t n, bool unit, struct components i, struct components o,
+                                         struct lookups *restrict to)
 {
 	const float *restrict ix = i.x, *restrict iy = i.y, *restrict iz = i.z, *restrict ox = o.x, *restrict oy = o.y,
 						  *restrict oz = o.z;
@@ -142,8 +143,7 @@ static inline struct cell KERNEL(cell_of)(struct lattice_dims dims, float shift,
  * Look-up m of the block after this one, if there is: its four rows are on the way while others are evaluated.
  * Always inline: gcc takes a function that only prefetches for one without effects, and drops calls of it.
  */
-__attribute__((always_inline)) static inline void KERNEL(fetch)(const struct table *t, const struct lookups *next, size_t m,
-                                                                size_t unit)
+static ALWAYS_INLINE void KERNEL(fetch)(const struct table *t, const struct lookups *next, size_t m, size_t unit)
 {
 	if (m >= next->count)
 		return;
@@ -166,10 +166,8 @@ struct KERNEL(form) {
 	bool compact;                                         /* residual, share and place are in use */
 };
 
-#define FORM_FUNCTION static inline __attribute__((always_inline))
-
-FORM_FUNCTION void KERNEL(form_evaluate)(const struct KERNEL(form) form, bool nearest, const struct table *t, const float wi[3],
-                                         const float wo[3], float rgb[3])
+static ALWAYS_INLINE void KERNEL(form_evaluate)(const struct KERNEL(form) form, bool nearest, const struct table *t,
+                                                const float wi[3], const float wo[3], float rgb[3])
 {
 	f32x4 squared, at;
 	if (direction_locate_squared(t->scale, wi, wo, &squared, &at)) {
@@ -180,9 +178,9 @@ FORM_FUNCTION void KERNEL(form_evaluate)(const struct KERNEL(form) form, bool ne
 	}
 }
 
-FORM_FUNCTION void KERNEL(form_locate)(const struct KERNEL(form) form, const struct table *t, size_t count,
-                                       const float *const wi[3], const float *const wo[3], size_t first,
-                                       struct lookups *restrict to)
+static ALWAYS_INLINE void KERNEL(form_locate)(const struct KERNEL(form) form, const struct table *t, size_t count,
+                                              const float *const wi[3], const float *const wo[3], size_t first,
+                                              struct lookups *restrict to)
 {
 	const struct table copy = *t; /* known not to change while *to is written */
 	const float shift = t->shift[0];
@@ -203,8 +201,8 @@ FORM_FUNCTION void KERNEL(form_locate)(const struct KERNEL(form) form, const str
 	}
 }
 
-FORM_FUNCTION void KERNEL(form_values)(const struct KERNEL(form) form, const struct table *t, const struct lookups *l,
-                                       const struct lookups *next, float *restrict r, float *restrict g, float *restrict b)
+static ALWAYS_INLINE void KERNEL(form_values)(const struct KERNEL(form) form, const struct table *t, const struct lookups *l,
+                                              const struct lookups *next, float *restrict r, float *restrict g, float *restrict b)
 {
 	for (size_t m = 0; m < l->count; m++) {
 		KERNEL(fetch)(t, next, m, form.unit);
@@ -220,8 +218,8 @@ FORM_FUNCTION void KERNEL(form_values)(const struct KERNEL(form) form, const str
 	}
 }
 
-FORM_FUNCTION void KERNEL(form_batch)(const struct KERNEL(form) form, const struct table *t, size_t count,
-                                      const float *const wi[3], const float *const wo[3], float *const rgb[3])
+static ALWAYS_INLINE void KERNEL(form_batch)(const struct KERNEL(form) form, const struct table *t, size_t count,
+                                             const float *const wi[3], const float *const wo[3], float *const rgb[3])
 {
 	struct lookups both[2];
 	struct lookups *now = &both[0], *next = &both[1];

@@ -99,8 +99,7 @@ static bp_status expansion_build(const struct expansion *expansion, bool half, e
 {
 	if (!lattice_dims_legal(expansion->dims) || (channels != 1 && channels != 3) ||
 	    (form != TABLE_EXPANDED && form != TABLE_COMPACT))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "no such form of table (form %d, %d channels)", (int)form,
-		                 channels);
+		return error_argument(error, "no such form of table (form %d, %d channels)", (int)form, channels);
 	struct table *t = NULL;
 	bp_status status = table_new(expansion->dims, half, form, channels, &t, error);
 	if (status)
@@ -152,8 +151,7 @@ bp_status table_build_model(const struct model *model, bool half, enum table_for
 	struct expansion expansion = {0};
 
 	if (half && !model_has_half(model->dims, &dims))
-		return error_set(error, BP_ERROR_ARGUMENT, BP_NO_OFFSET, "the extents %u x %u x %u have no halves", dims.theta_h,
-		                 dims.theta_d, dims.phi_d);
+		return error_argument(error, "the extents %u x %u x %u have no halves", dims.theta_h, dims.theta_d, dims.phi_d);
 	if (m && form == TABLE_EXPANDED && (channels == 1 || channels == 3) && m->unit >= 0x1p-60 && m->unit <= 0x1p60)
 		return codes_build(model, dims, half, channels, out, error);
 	bp_status status = half ? model_expand_half(model, &expansion, error) : model_expand(model, 0, &expansion, error);
